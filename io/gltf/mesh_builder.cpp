@@ -191,8 +191,9 @@ class Build {
     const std::string_view bytes = file_.bytes(view.range, part.name);
     const std::array<std::uint32_t, kRoles> roles =
         roles_of(*part.primitive, part.primitive->draco_attributes);
-    const std::vector<GltfCarried>& packed = part.primitive->draco_attributes.carried;
-    DracoMesh& mesh = draco_.emplace_back(unpack_draco(file_, bytes, roles, packed, part.name));
+    const GltfAttributes& attributes = part.primitive->draco_attributes;
+    const std::vector<GltfCarried>& packed = attributes.carried;
+    DracoMesh& mesh = draco_.emplace_back(unpack_draco(file_, bytes, roles, attributes, part.name));
     for (std::size_t role = 0; role < kRoles; ++role) {
       const std::vector<float>& numbers = mesh.numbers[role];
       if (role != kPositions && numbers.empty()) continue;
@@ -416,14 +417,36 @@ class Build {
     return accessors_.numbers(accessor, components);
   }
 
-  /// Draco's vertices are others than those of what stands beside it.
+  /// Whether what bends the part and stands beside Draco's data is of as many vertices, which then are in the
+  /// same order, by the extension's rules.
+  bool can_bend_draco(const Part& part) const {
+    const GltfAttributes& a = part.primitive->attributes;
+    const auto first = static_cast<std::ptrdiff_t>(std::min(part.draco->joints.size(), a.joints.size()));
+    std::vector<std::uint32_t> beside;
+    if (!bending_->joints.empty()) {
+      beside.assign(a.joints.begin() + first, a.joints.end());
+      beside.insert(beside.end(), a.weights.begin() + first, a.weights.end());
+    }
+    for (std::size_t i = 0; i < std::min(part.primitive->targets.size(), bending_->weights.size()); ++i) {
+      const GltfAttributes& target = part.primitive->targets[i];
+      if (bending_->weights[i] != 0)
+        beside.insert(beside.end(), {target.positions, target.normals, target.tangents});
+    }
+    return std::ranges::all_of(beside, [&](std::uint32_t accessor) {
+      return accessor == kNoId || file_.model().accessors[accessor].count == part.elements[kPositions].count;
+    });
+  }
+
   void bend(const Part& part) {
     const GltfPrimitive& primitive = *part.primitive;
     const bool is_bent = (!bending_->weights.empty() && !primitive.targets.empty()) ||
                          (!bending_->joints.empty() && !primitive.attributes.joints.empty());
     if (!is_bent || part.elements[kPositions].count == 0) return;
-    if (part.draco != nullptr) {
-      warnings_.push_back(part.name + ": is packed by Draco, and is not bent by skins and morph targets");
+    if (part.draco != nullptr && !can_bend_draco(part)) {
+      warnings_.push_back(
+          part.name +
+          ": is packed by Draco, with other vertices than its skin or morph targets have, and "
+          "is not bent by them");
       return;
     }
     for (std::size_t i = 0; i < std::min(primitive.targets.size(), bending_->weights.size()); ++i)
@@ -455,8 +478,10 @@ class Build {
     std::vector<Affine> maps(count, zero_map());
     std::vector<double> sums(count);
     for (std::size_t set = 0; set < a.joints.size(); ++set) {
-      const std::vector<float> joints = beside(part, a.joints[set], 4),
-                               weights = beside(part, a.weights[set], 4);
+      const bool is_packed = part.draco != nullptr && set < part.draco->joints.size();
+      const std::vector<float> joints = is_packed ? part.draco->joints[set] : beside(part, a.joints[set], 4),
+                               weights =
+                                   is_packed ? part.draco->weights[set] : beside(part, a.weights[set], 4);
       for (std::size_t i = 0; i < joints.size(); ++i) {
         if (weights[i] == 0) continue;
         if (!(joints[i] >= 0 && joints[i] < static_cast<float>(bending_->joints.size())))

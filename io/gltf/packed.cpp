@@ -85,7 +85,7 @@ bool can_unpack_draco() { return true; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                        const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
-                       const std::vector<GltfCarried>& carried, const std::string& where) {
+                       const GltfAttributes& others, const std::string& where) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
@@ -101,7 +101,10 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                      : kDracoSizes[i] == 3 ? draco_numbers<3>(file, mesh, wanted[i], where)
                                            : draco_numbers<4>(file, mesh, wanted[i], where);
   }
-  for (const GltfCarried& one : carried) out.carried.push_back(draco_carried(file, mesh, one, where));
+  for (const GltfCarried& one : others.carried) out.carried.push_back(draco_carried(file, mesh, one, where));
+  for (const std::uint32_t id : others.joints) out.joints.push_back(draco_numbers<4>(file, mesh, id, where));
+  for (const std::uint32_t id : others.weights)
+    out.weights.push_back(draco_numbers<4>(file, mesh, id, where));
   out.indices.reserve(std::size_t{3} * mesh.num_faces());
   for (draco::FaceIndex i(0); i < mesh.num_faces(); ++i)
     for (const draco::PointIndex& corner : mesh.face(i)) out.indices.push_back(corner.value());
@@ -113,7 +116,7 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
 bool can_unpack_draco() { return false; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view,
-                       const std::array<std::uint32_t, kDracoSizes.size()>&, const std::vector<GltfCarried>&,
+                       const std::array<std::uint32_t, kDracoSizes.size()>&, const GltfAttributes&,
                        const std::string& where) {
   file.fail(where + ": is packed by Draco, without which this program is built");
 }

@@ -32,14 +32,15 @@ struct DracoMesh {
     bool normalized = false;  ///< say the data
     std::string bytes{};      ///< without gaps
   };
-  std::vector<Carried> carried;  ///< as they were asked for
+  std::vector<Carried> carried;                     ///< as they were asked for
+  std::vector<std::vector<float>> joints, weights;  ///< four of each vertex, by set
 };
 
-/// Unpacks the attributes, which `wanted` and `carried` give by their numbers in the data; kNoId: not wanted.
-/// Throws Error, which begins with `where`, for damaged data.
+/// Unpacks the attributes that `wanted` gives by their numbers in the data, kNoId: not wanted, and of
+/// `others` what is carried, joints and weights. Throws Error, which begins with `where`, for damaged data.
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                        const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
-                       const std::vector<GltfCarried>& carried, const std::string& where);
+                       const GltfAttributes& others, const std::string& where);
 
 /// Unpacks a view. Throws Error if its bytes are damaged, or if the program is built without meshoptimizer.
 std::string unpack_meshopt(const GltfFile& file, const GltfPacking& packing, const std::string& where);

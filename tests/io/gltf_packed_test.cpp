@@ -102,21 +102,46 @@ TEST(GltfPacked, DamagedMeshoptimizerData) {
 
 #ifdef OKTETT_HAVE_DRACO
 
-/// A tetrahedron in Draco's form, with normals.
-std::string draco_bytes(const std::vector<Vec3f>& points) {
+/// A tetrahedron in Draco's form. In a skin the last point follows the second joint, the others the first;
+/// without a skin joints and weights are left out.
+std::string draco_bytes(const std::vector<Vec3f>& points, bool skin = false) {
   constexpr int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(4);
   const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  for (int i = 0; i < 4; ++i)
-    builder.SetAttributeValuesForFace(position, draco::FaceIndex(static_cast<std::uint32_t>(i)),
-                                      &points[kFaces[i][0]], &points[kFaces[i][1]], &points[kFaces[i][2]]);
+  using Four = std::array<std::uint8_t, 4>;
+  const std::array<Four, 2> joints{{{0, 1, 0, 0}, {1, 0, 0, 0}}};
+  const Four weights{200, 0, 0, 0};
+  int joint = 0, weight = 0;
+  if (skin) {
+    joint = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_UINT8);
+    weight = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_UINT8);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const draco::FaceIndex face(static_cast<std::uint32_t>(i));
+    const auto set = [&](int attribute, const auto& value) {
+      builder.SetAttributeValuesForFace(attribute, face, value(0), value(1), value(2));
+    };
+    set(position, [&](int k) { return &points[static_cast<std::size_t>(kFaces[i][k])]; });
+    if (!skin) continue;
+    set(joint, [&](int k) { return &joints[kFaces[i][k] == 3 ? 1 : 0]; });
+    set(weight, [&](int) { return &weights; });
+  }
   const auto mesh = builder.Finalize();
   draco::Encoder encoder;
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
   draco::EncoderBuffer buffer;
   EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
   return {buffer.data(), buffer.size()};
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  double volume = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    volume += dot(Vec3d(mesh.positions[mesh.indices[i]]), cross(Vec3d(mesh.positions[mesh.indices[i + 1]]),
+                                                                Vec3d(mesh.positions[mesh.indices[i + 2]]))) /
+              6;
+  return volume;
 }
 
 std::string draco_file(const std::string& data, int attribute) {
@@ -143,16 +168,63 @@ TEST(GltfPacked, Draco) {
   ASSERT_EQ(mesh.positions.size(), 4u);
   ASSERT_EQ(mesh.triangle_count(), 4u);
   // Vertices come in an order of their own: the volume tells that all are there, and turned the right way.
-  double volume = 0;
-  for (std::size_t i = 0; i < 12; i += 3)
-    volume += dot(Vec3d(mesh.positions[mesh.indices[i]]), cross(Vec3d(mesh.positions[mesh.indices[i + 1]]),
-                                                                Vec3d(mesh.positions[mesh.indices[i + 2]]))) /
-              6;
-  EXPECT_NEAR(volume, -1, 1e-6);
+  EXPECT_NEAR(volume_of(mesh), -1, 1e-6);
   EXPECT_EQ(files.error(draco_file(data, 5)),
             "a.glb: meshes[0].primitives[0]: its data hold no attribute 5 of 3 numbers");
   for (std::size_t size = 0; size < data.size(); ++size)
     EXPECT_NE(files.error(draco_file(data.substr(0, size), 0)), "no error") << size;
+}
+
+/// The tetrahedron with a skin or a morph target.
+std::string bent_draco_file(GltfWriter& out, const std::string& data, const std::string& primitive,
+                            const std::string& packed, const std::string& more, const std::string& node) {
+  return out.glb("\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"meshes\":[{" + more +
+                 "\"primitives\":[{\"attributes\":{\"POSITION\":0" + primitive +
+                 ",\"indices\":1,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":" +
+                 std::to_string(out.view(data)) + ",\"attributes\":{\"POSITION\":0" + packed +
+                 "}}}}]}],\"skins\":[{\"joints\":[1,2]}],\"nodes\":[{\"mesh\":0" + node +
+                 "},{},{\"translation\":[0,0,10]}],\"scenes\":[{\"nodes\":[0,1,2]}]");
+}
+
+constexpr const char* kTetrahedron =
+    "{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":12,\"type\":"
+    "\"SCALAR\"}";
+
+TEST(GltfPacked, DracoIsBentBySkins) {
+  const GltfFiles files;
+  const std::vector<Vec3f> points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+  GltfWriter out;
+  const std::string four = ",{\"componentType\":5121,\"count\":4,\"type\":\"VEC4\"";
+  out.accessors = kTetrahedron + four + "}" + four + ",\"normalized\":true}";
+  const std::string skinned =
+      bent_draco_file(out, draco_bytes(points, true), ",\"JOINTS_0\":2,\"WEIGHTS_0\":3}",
+                      ",\"JOINTS_0\":1,\"WEIGHTS_0\":2", "", ",\"skin\":0");
+  EXPECT_TRUE(files.load(skinned).warnings.empty());
+  // The tip is at a height of 13.
+  EXPECT_NEAR(volume_of(files.load(skinned).mesh), -13.0 / 3, 1e-4);
+}
+
+TEST(GltfPacked, DracoIsBentByMorphTargetsOfItsVertices) {
+  const GltfFiles files;
+  const std::vector<Vec3f> points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+  const std::string data = draco_bytes(points);
+  std::vector<Vec3f> moves;
+  for (const Vec3f& p : files.load(draco_file(data, 0)).mesh.positions) moves.push_back(p * 2.0f);
+  const auto load = [&] {
+    GltfWriter out;
+    out.vectors({{0, 0, 0}}), out.vectors({{0, 0, 0}});
+    const std::size_t target = out.vectors(moves);
+    out.accessors = kTetrahedron + out.accessors.substr(out.accessors.rfind(",{"));
+    return files.load(bent_draco_file(out, data,
+                                      "},\"targets\":[{\"POSITION\":" + std::to_string(target) + "}]", "",
+                                      "\"weights\":[1],", ""));
+  };
+  EXPECT_TRUE(load().warnings.empty());
+  // All three sides are three times as long.
+  EXPECT_NEAR(volume_of(load().mesh), -27, 1e-4);
+  moves.push_back({});
+  EXPECT_EQ(load().warnings.size(), 1u);
+  EXPECT_NEAR(volume_of(load().mesh), -1, 1e-6);
 }
 
 #endif
