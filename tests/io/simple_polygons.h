@@ -242,23 +242,27 @@ inline bool edges_meet(const GridPoint& a, const GridPoint& b, const GridPoint& 
          sign(doubled_area(c, d, a)) * sign(doubled_area(c, d, b)) <= 0;
 }
 
-/// Random corners, turned round between two edges that meet until none do, each time shorter; at most sixty.
+/// Random corners, turned round between two edges that meet until none do; at most sixty. Edges that cross
+/// become shorter each time; where corners lie on edges that may never end, so others are taken then.
 inline Outline untangled(int corners, std::mt19937& random) {
-  Outline p;
-  for (int i = 0; i < std::min(corners, 60); ++i)
-    p.push_back({whole(random, 0, 9999), whole(random, 0, 9999)});
-  const std::size_t n = p.size();
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t i = 0; i + 2 < n; ++i)
-      for (std::size_t j = i + 2; j < n && (i > 0 || j + 1 < n); ++j)
-        if (edges_meet(p[i], p[i + 1], p[j], p[j + 1 < n ? j + 1 : 0])) {
-          std::reverse(p.begin() + static_cast<std::ptrdiff_t>(i + 1),
-                       p.begin() + static_cast<std::ptrdiff_t>(j + 1));
-          changed = true;
-        }
+  while (true) {
+    Outline p;
+    for (int i = 0; i < std::min(corners, 60); ++i)
+      p.push_back({whole(random, 0, 9999), whole(random, 0, 9999)});
+    const std::size_t n = p.size();
+    bool changed = true;
+    for (int pass = 0; changed && pass < 1000; ++pass) {
+      changed = false;
+      for (std::size_t i = 0; i + 2 < n; ++i)
+        for (std::size_t j = i + 2; j < n && (i > 0 || j + 1 < n); ++j)
+          if (edges_meet(p[i], p[i + 1], p[j], p[j + 1 < n ? j + 1 : 0])) {
+            std::reverse(p.begin() + static_cast<std::ptrdiff_t>(i + 1),
+                         p.begin() + static_cast<std::ptrdiff_t>(j + 1));
+            changed = true;
+          }
+    }
+    if (!changed) return p;
   }
-  return p;
 }
 
 struct SimplePolygon {
