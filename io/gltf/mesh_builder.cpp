@@ -193,7 +193,12 @@ class Build {
         roles_of(*part.primitive, part.primitive->draco_attributes);
     const GltfAttributes& attributes = part.primitive->draco_attributes;
     const std::vector<GltfCarried>& packed = attributes.carried;
-    DracoMesh& mesh = draco_.emplace_back(unpack_draco(file_, bytes, roles, attributes, part.name));
+    const std::array<std::uint32_t, kRoles> accessors = roles_of(*part.primitive, part.primitive->attributes);
+    std::array<bool, kRoles> normalized{};
+    for (std::size_t role = 0; role < kRoles; ++role)
+      normalized[role] = accessors[role] != kNoId && file_.model().accessors[accessors[role]].normalized;
+    DracoMesh& mesh =
+        draco_.emplace_back(unpack_draco(file_, bytes, roles, normalized, attributes, part.name));
     for (std::size_t role = 0; role < kRoles; ++role) {
       const std::vector<float>& numbers = mesh.numbers[role];
       if (role != kPositions && numbers.empty()) continue;

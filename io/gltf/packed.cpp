@@ -1,5 +1,6 @@
 #include "io/gltf/packed.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -18,9 +19,25 @@ namespace oktett {
 
 namespace {
 
+/// The greatest whole number of a type; 0: of floats.
+float greatest_of(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8:
+      return 127;
+    case draco::DT_UINT8:
+      return 255;
+    case draco::DT_INT16:
+      return 32767;
+    case draco::DT_UINT16:
+      return 65535;
+    default:
+      return 0;
+  }
+}
+
 template <int kSize>
 std::vector<float> draco_numbers(const GltfFile& file, const draco::Mesh& mesh, std::uint32_t id,
-                                 const std::string& where) {
+                                 const std::string& where, bool normalized = false) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(id);
   if (attribute == nullptr || attribute->num_components() != kSize)
     file.fail(where + ": its data hold no attribute " + std::to_string(id) + " of " + std::to_string(kSize) +
@@ -30,6 +47,10 @@ std::vector<float> draco_numbers(const GltfFile& file, const draco::Mesh& mesh, 
     if (!attribute->ConvertValue<float, kSize>(attribute->mapped_index(draco::PointIndex(i)),
                                                &numbers[kSize * i]))
       file.fail(where + ": its data cannot be read as numbers");
+  // Where the data say it, too, Draco has divided.
+  const float greatest = greatest_of(attribute->data_type());
+  if (normalized && !attribute->normalized() && greatest > 0)
+    for (float& x : numbers) x = std::max(x / greatest, -1.0f);
   return numbers;
 }
 
@@ -85,7 +106,8 @@ bool can_unpack_draco() { return true; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                        const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
-                       const GltfAttributes& others, const std::string& where) {
+                       const std::array<bool, kDracoSizes.size()>& normalized, const GltfAttributes& others,
+                       const std::string& where) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
@@ -94,12 +116,12 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
   const draco::Mesh& mesh = *result.value();
   DracoMesh out;
   out.vertices = mesh.num_points();
-  out.numbers[0] = draco_numbers<3>(file, mesh, wanted[0], where);
+  out.numbers[0] = draco_numbers<3>(file, mesh, wanted[0], where, normalized[0]);
   for (std::size_t i = 1; i < wanted.size(); ++i) {
     if (wanted[i] == kNoId) continue;
-    out.numbers[i] = kDracoSizes[i] == 2   ? draco_numbers<2>(file, mesh, wanted[i], where)
-                     : kDracoSizes[i] == 3 ? draco_numbers<3>(file, mesh, wanted[i], where)
-                                           : draco_numbers<4>(file, mesh, wanted[i], where);
+    out.numbers[i] = kDracoSizes[i] == 2   ? draco_numbers<2>(file, mesh, wanted[i], where, normalized[i])
+                     : kDracoSizes[i] == 3 ? draco_numbers<3>(file, mesh, wanted[i], where, normalized[i])
+                                           : draco_numbers<4>(file, mesh, wanted[i], where, normalized[i]);
   }
   for (const GltfCarried& one : others.carried) out.carried.push_back(draco_carried(file, mesh, one, where));
   for (const std::uint32_t id : others.joints) out.joints.push_back(draco_numbers<4>(file, mesh, id, where));
@@ -116,7 +138,8 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
 bool can_unpack_draco() { return false; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view,
-                       const std::array<std::uint32_t, kDracoSizes.size()>&, const GltfAttributes&,
+                       const std::array<std::uint32_t, kDracoSizes.size()>&,
+                       const std::array<bool, kDracoSizes.size()>&, const GltfAttributes&,
                        const std::string& where) {
   file.fail(where + ": is packed by Draco, without which this program is built");
 }

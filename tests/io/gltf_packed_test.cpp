@@ -190,6 +190,32 @@ constexpr const char* kTetrahedron =
     "{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":12,\"type\":"
     "\"SCALAR\"}";
 
+TEST(GltfPacked, DracoHasPartsOfWholeNumbersWhereAccessorsSaySo) {
+  using Three = std::array<std::int16_t, 3>;
+  const std::array<Three, 3> points{{{0, 0, -32768}, {32767, 0, 0}, {0, 16384, 0}}};
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(1);
+  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_INT16);
+  builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), &points[0], &points[1], &points[2]);
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  const auto mesh = builder.Finalize();
+  ASSERT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+  const GltfFiles files;
+  const auto greatest = [&](const std::string& more) {
+    GltfWriter out;
+    out.accessors = "{\"componentType\":5122,\"count\":3,\"type\":\"VEC3\"" + more +
+                    "},{\"componentType\":5125,\"count\":3,\"type\":\"SCALAR\"}";
+    Vec3f most{0, 0, 0};
+    const std::string file = bent_draco_file(out, {buffer.data(), buffer.size()}, "}", "", "", "");
+    for (const Vec3f& p : files.load(file).mesh.positions)
+      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, -p.z)};
+    return most;
+  };
+  EXPECT_EQ(greatest(""), (Vec3f{32767, 16384, 32768}));
+  EXPECT_EQ(greatest(",\"normalized\":true"), (Vec3f{1, 16384.0f / 32767, 1}));
+}
+
 TEST(GltfPacked, DracoIsBentBySkins) {
   const GltfFiles files;
   const std::vector<Vec3f> points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
