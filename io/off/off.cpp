@@ -129,6 +129,7 @@ class OffLoad {
   void read_vertices() {
     TriangleMesh& mesh = parsed_.mesh;
     vertices_ = next_;
+    if (has_unsaid_colors()) header_.has_color = true;
     mesh.positions.resize_uninitialized(vertex_count_);
     if (header_.has_normal) mesh.normals.resize_uninitialized(vertex_count_);
     if (header_.has_uv) mesh.uvs.resize_uninitialized(vertex_count_);
@@ -149,6 +150,23 @@ class OffLoad {
         mesh.uvs[i].y = read_value(read_uv_coordinate);
       }
     }
+  }
+
+  /// Some write colours behind positions without 'C' in the header. Two vertices on a line leave fewer lines.
+  bool has_unsaid_colors() {
+    if (header_.has_color || header_.has_normal || header_.has_uv) return false;
+    skip_space();
+    const std::size_t count = count_words(next_);
+    if (count != 6 && count != 7) return false;
+    std::uint64_t lines = 0;
+    for (const char* p = next_; p < text_end() && lines < vertex_count_ + face_count_; p = find_line_end(p)) {
+      while (p < text_end() && (is_blank(*p) || is_line_end(*p))) ++p;
+      if (p == text_end()) break;
+      if (*p == '#') continue;
+      if (lines < vertex_count_ && count_words(p) != count) return false;
+      ++lines;
+    }
+    return lines == vertex_count_ + face_count_;
   }
 
   void recentre() {

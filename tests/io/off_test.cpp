@@ -54,6 +54,23 @@ TEST(Off, WhatVerticesHoldStandsInTheHeader) {
   EXPECT_TRUE(to_string(file.warnings.at(0)).ends_with("a.off:3:15: warning: colours are not read"));
 }
 
+TEST(Off, ColoursOfVerticesNeedNoHeader) {
+  const OffFiles files;
+  for (const char* color : {" 1.0 0.0 0.5", " 255 0 7 255"}) {
+    std::string text = "OFF\n\n4 1\n\n";
+    for (const char* point : {"0 0 0", "1 0 0", "1 1 0", "0 1 0"})
+      text += std::string(point) + color + "\n# c\n\n";
+    const MeshFile file = files.load(text + "4 0 1 2 3\n");
+    EXPECT_EQ(file.mesh.positions[3], (Vec3f{0, 1, 0}));
+    EXPECT_EQ(file.mesh.triangle_count(), 2u);
+    EXPECT_EQ(file.warnings.size(), 1u);
+  }
+  // Two vertices on a line are none of them, also where faces have as many words.
+  EXPECT_EQ(indices_of("OFF\n4 1 0\n0 0 0 1 0 0\n1 1 0 0 1 0\n3 0 1 2\n"),
+            (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(indices_of("OFF\n4 2 0\n0 0 0 1 0 0\n1 1 0 0 1 0\n5 0 1 2 3 0\n5 0 1 2 3 0\n").size(), 18u);
+}
+
 TEST(Off, ColorsOfFacesAreNoCorners) {
   const OffFiles files;
   const std::string text =
