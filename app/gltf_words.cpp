@@ -20,6 +20,10 @@ void add_gltf_options(Verb& verb, GltfWords& words, bool moves) {
   verb.option("--variant", &words.variant, "NAME", "Materials of this variant of a glTF file");
 }
 
+void add_stroke_option(Verb& verb, GltfWords& words) {
+  verb.option("--stroke-width", &words.stroke_width, "LENGTH", "Width of points and lines of meshes");
+}
+
 void add_frame_options(Verb& verb, FrameWords& words) {
   verb.option("--frames", &words.frames, "A-B", "Render pictures A to B of a glTF file's animations");
   verb.option("--fps", &words.rate, "N", "Pictures per second of --frames; default: 24");
@@ -56,6 +60,10 @@ static double seconds_of(const char* option, const std::string& word) {
 GltfOptions gltf_options(const GltfWords& words) {
   GltfOptions options;
   options.variant = words.variant;
+  const std::string& width = words.stroke_width;
+  if (!width.empty() && (!parse_number(width, options.stroke_width) || !(options.stroke_width > 0) ||
+                         !(options.stroke_width <= 1e18)))
+    throw Error(fmt::format("--stroke-width: expected a length greater than 0, found '{}'", width));
   if (!words.time.empty()) options.time = seconds_of("--time", words.time);
   if (words.shutter.empty()) return options;
   if (!options.time) throw Error("--shutter needs --time or --frames");

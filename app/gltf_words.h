@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the user asks of glTF files.
+/// \file What the user asks of glTF files and meshes.
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace oktett {
 
 /// The words of the command line, not checked yet. Empty: not given.
 struct GltfWords {
-  std::string time, shutter, variant;
+  std::string time, shutter, variant, stroke_width;
 };
 
 /// Pictures of an animation, one after the other.
@@ -32,6 +32,8 @@ std::string frame_path(const std::string& path, int number);
 
 /// `moves`: the verb shows things that move while the shutter is open.
 void add_gltf_options(Verb& verb, GltfWords& words, bool moves);
+/// Of verbs that show points and lines.
+void add_stroke_option(Verb& verb, GltfWords& words);
 
 /// Throws Error for words that are no numbers.
 GltfOptions gltf_options(const GltfWords& words);

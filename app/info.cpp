@@ -41,8 +41,8 @@ struct SceneSummary {
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   std::uint64_t mesh_bytes = 0;
-  std::uint64_t other_shapes =
-      0;  ///< objects that are neither mesh nor instance; a list of spheres counts each
+  std::uint64_t other_shapes = 0;  ///< objects that are neither mesh nor instance; a list of spheres, points
+                                   ///< and lines count each
   std::uint64_t instances = 0;
   double triangles_shown = 0;        ///< counting every instance
   std::uint64_t unbounded = 0;       ///< infinite planes
@@ -62,6 +62,8 @@ struct ShapeBounds {
   Box operator()(const MeshShape& shape) const {
     Box box;
     if (shape.mesh) each_corner(*shape.mesh, [&](const Vec3f& p) { box.grow(p); });
+    const auto r = static_cast<float>(shape.stroke_width / 2);
+    if (!box.empty() && r > 0) box.grow(box.lo - Vec3f{r, r, r}), box.grow(box.hi + Vec3f{r, r, r});
     return box;
   }
   template <class T>
@@ -81,7 +83,7 @@ struct ShapeBounds {
 /// Tight for a mesh, whose box would grow when it is turned.
 Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
   const auto* shape = std::get_if<MeshShape>(&object.shape);
-  if (shape == nullptr || object.transform.is_identity()) {
+  if (shape == nullptr || shape->stroke_width > 0 || object.transform.is_identity()) {
     const Box box = std::visit(ShapeBounds{prototypes}, object.shape);
     return box.empty() || object.transform.is_identity() ? box : transform_bounds(object.transform, box);
   }
@@ -139,6 +141,11 @@ class Counter {
   double count_mesh(const MeshShape& shape) {
     if (!shape.mesh) return 0;
     const TriangleMesh& mesh = *shape.mesh;
+    if (shape.stroke_width > 0) {
+      summary_.other_shapes += mesh.triangle_count();
+      for (const MeshAttribute& a : mesh.attributes) summary_.attributes.insert(a.name);
+      return 0;
+    }
     if (seen_.insert(&mesh).second) {
       ++summary_.meshes;
       summary_.triangles += mesh.triangle_count();
@@ -323,6 +330,7 @@ void add_info_command(CommandLine& line) {
   verb.positional("file", arguments->file, "FILE", "Scene file (.yaml) or mesh");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene file; may be repeated");
   add_gltf_options(verb, arguments->gltf, false);
+  add_stroke_option(verb, arguments->gltf);
   add_bvh_option(verb, arguments->bvh);
   verb.flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb.flag("--json", arguments->json, "Print one JSON object");

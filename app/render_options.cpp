@@ -83,6 +83,7 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
   add_gltf_options(verb, a.gltf, true);
+  add_stroke_option(verb, a.gltf);
   add_limit_options(verb, a.limits);
 }
 

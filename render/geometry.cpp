@@ -18,7 +18,8 @@ struct IsSolid {
   const std::vector<Prototype>& prototypes;
 
   bool operator()(const MeshShape& shape) const {
-    return shape.mesh != nullptr && (shape.by_winding || find_open_edges(*shape.mesh).count == 0);
+    return shape.mesh != nullptr && shape.stroke_width == 0 &&
+           (shape.by_winding || find_open_edges(*shape.mesh).count == 0);
   }
   bool operator()(const ExactShape& shape) const { return !is_open(shape); }
   bool operator()(const InstanceShape& shape) const {
@@ -170,10 +171,25 @@ class WorldBuilder {
 
   bool convert(const MeshShape& shape, Geometry& geometry) {
     if (shape.mesh == nullptr) return false;
-    geometry.shape = MeshGeometry{shape.mesh.get(), shape.smooth, shape.test};
     world_.objects.back().slots = shape.slot_materials;
+    if (shape.stroke_width > 0)
+      convert_strokes(shape, geometry);
+    else
+      geometry.shape = MeshGeometry{shape.mesh.get(), shape.smooth, shape.test};
     keep(shape.mesh);
     return true;
+  }
+
+  /// Several geometries are a structure of their own.
+  void convert_strokes(const MeshShape& shape, Geometry& geometry) {
+    std::vector<Geometry> parts;
+    world_.objects.back().strokes = std::make_shared<const StrokeParts>(
+        add_strokes(shape.mesh, shape.stroke_width / 2, geometry.user, parts));
+    std::vector<std::uint32_t> shown(parts.size(), geometry.user);
+    if (parts.size() == 1)
+      geometry.shape = std::move(parts[0].shape);
+    else
+      geometry.shape = InstanceGeometry{build_counted(std::move(parts), std::move(shown), 0)};
   }
 
   bool convert(const SphereShape& shape, Geometry& geometry) {

@@ -12,6 +12,7 @@
 #include "core/box.h"
 #include "kernels/exact_form.h"
 #include "render/scene.h"
+#include "render/strokes.h"
 
 namespace oktett {
 
@@ -34,6 +35,7 @@ struct ObjectMaterials {
   /// if it has no inside, or if paths need not know.
   std::uint32_t solid = kNoId;
   std::string name;  ///< of the object; that of the combination for an operand without one; may be empty
+  std::shared_ptr<const StrokeParts> strokes{};  ///< if the object is points and lines
 };
 
 /// The object that each geometry of a structure shows; of a list of instances the first, which the others

@@ -316,6 +316,9 @@ struct MeshShape {
   TriangleTest test = TriangleTest::watertight;
   bool by_winding = false;  ///< take part in combinations even if the mesh is not closed
   bool weld = false;        ///< what the scene file asked for; `mesh` is as it says
+  /// If not 0, the triangles are points and lines of this width, balls and round cylinders: without area,
+  /// their corners a, a, a of a point and a, b, b of a line. All are in slot 0, and none has an inside.
+  double stroke_width = 0;
 
   static constexpr ShapeInfo kShapeInfo{"mesh", "the triangles of a file"};
   void describe(auto& p) {
@@ -328,6 +331,7 @@ struct MeshShape {
               {"badouel", TriangleTest::badouel},
               {"segura_feito", TriangleTest::segura_feito}},
              "how a ray is tested against a triangle");
+    p.optional("stroke_width", stroke_width, kPositive, "width of the points and lines of the file");
     p.choice("solid", by_winding, {{"closed", false}, {"winding", true}},
              "which meshes have an inside: closed ones, or any, see below");
   }

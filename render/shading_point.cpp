@@ -350,6 +350,15 @@ TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
   return needs;
 }
 
+/// Where on its mesh, or on the points and lines of one, a hit lies.
+MeshPoint place_on_mesh(const RenderContext& context, const SurfaceInteraction& s, const Hit& hit) {
+  const World& world = *context.world;
+  const StrokeParts* const strokes =
+      s.user < world.objects.size() ? world.objects[s.user].strokes.get() : nullptr;
+  if (strokes == nullptr) return mesh_point(*world.accel, hit);
+  return strokes->at(s, object_transform(*world.accel, hit).inverse().point(Vec3d(s.position)));
+}
+
 /// What the textures of a material ask of a hit.
 class TexturedHit {
  public:
@@ -361,7 +370,7 @@ class TexturedHit {
       second_ = by_second_uvs(context, s, hit);
       place.second.uv = second_->uv;
     }
-    if (needs.mesh) place.on_mesh = mesh_point(*context.world->accel, hit);
+    if (needs.mesh) place.on_mesh = place_on_mesh(context, s, hit);
     if (!needs.position && attribute_in(context.texture_list, m.bump_texture) == nullptr) return;
     to_world_ = object_transform(*context.world->accel, hit);
     to_object_ = to_world_.inverse();

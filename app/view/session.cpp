@@ -155,7 +155,9 @@ bool WatchedFiles::have_changed() {
 namespace {
 
 struct NameOfShape {
-  std::string operator()(const MeshShape&) const { return "mesh"; }
+  std::string operator()(const MeshShape& s) const {
+    return s.stroke_width > 0 ? "points and lines" : "mesh";
+  }
   std::string operator()(const InstanceShape&) const { return "instance"; }
   std::string operator()(const CsgShape&) const { return "combination"; }
   std::string operator()(const SpheresShape&) const { return "spheres"; }

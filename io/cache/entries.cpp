@@ -111,10 +111,15 @@ std::string mesh_header(const MeshEntry& entry) {
 
 std::vector<CacheSection> mesh_sections(const MeshEntry& entry) {
   const TriangleMesh& mesh = entry.parsed.mesh;
-  std::vector<CacheSection> sections{
-      section_of(mesh.positions),     section_of(mesh.normals),        section_of(mesh.uvs),
-      section_of(mesh.indices),       section_of(mesh.normal_indices), section_of(mesh.uv_indices),
-      section_of(mesh.material_slots)};
+  std::vector<CacheSection> sections{section_of(mesh.positions),
+                                     section_of(mesh.normals),
+                                     section_of(mesh.uvs),
+                                     section_of(mesh.indices),
+                                     section_of(mesh.normal_indices),
+                                     section_of(mesh.uv_indices),
+                                     section_of(mesh.material_slots),
+                                     section_of(entry.parsed.strokes),
+                                     section_of(entry.parsed.stroke_slots)};
   for (const MeshAttribute& a : mesh.attributes)
     sections.push_back(section_of(a.floats)), sections.push_back(section_of(a.srgb));
   return sections;
@@ -148,7 +153,10 @@ void read_mesh_columns(const CacheFile& file, MeshEntry& entry) {
   file.copy(0, mesh.positions), file.copy(1, mesh.normals), file.copy(2, mesh.uvs);
   file.copy(3, mesh.indices), file.copy(4, mesh.normal_indices), file.copy(5, mesh.uv_indices);
   file.copy(6, mesh.material_slots);
-  std::size_t section = 7;
+  Column<std::uint32_t>& strokes = entry.parsed.strokes;
+  Column<std::uint16_t>& stroke_slots = entry.parsed.stroke_slots;
+  file.copy(7, strokes), file.copy(8, stroke_slots);
+  std::size_t section = 9;
   for (MeshAttribute& a : mesh.attributes) file.copy(section++, a.floats), file.copy(section++, a.srgb);
   const std::size_t corners = mesh.indices.size(), positions = mesh.positions.size();
   // Of images there is one slot more, for faces without; one alone needs no numbers.
@@ -160,7 +168,10 @@ void read_mesh_columns(const CacheFile& file, MeshEntry& entry) {
       are_indices(mesh.uv_indices, corners, mesh.uvs.size()) &&
       (mesh.material_slots.size() == (slots > 0 ? corners / 3 : 0) ||
        (images > 0 && mesh.material_slots.empty())) &&
-      are_attributes(mesh) && all_of(mesh.material_slots, [=](std::uint16_t slot) { return slot < slots; });
+      strokes.size() % 2 == 0 && all_of(strokes, [=](std::uint32_t index) { return index < positions; }) &&
+      stroke_slots.size() == (entry.parsed.materials.empty() ? 0 : strokes.size() / 2) &&
+      all_of(stroke_slots, [=](std::uint16_t slot) { return slot < slots; }) && are_attributes(mesh) &&
+      all_of(mesh.material_slots, [=](std::uint16_t slot) { return slot < slots; });
   if (!good) file.fail("has indices that lead nowhere");
 }
 

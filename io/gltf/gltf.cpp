@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/mesh_geometry.h"
 #include "core/phase.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/gltf_file.h"
 #include "io/gltf/mesh_builder.h"
 #include "io/gltf/pose.h"
 #include "io/mesh/reading.h"
+#include "io/mesh/strokes.h"
 #include "io/text/files.h"
 
 namespace oktett {
@@ -134,39 +136,93 @@ class SceneReader {
     if (is_skinned) bending.joints = gltf_joints(accessors_, file_.model().skins[node.skin], pose());
     const bool is_bent =
         is_skinned || std::ranges::any_of(bending.weights, [](double weight) { return weight != 0; });
-    std::uint32_t mesh = kNoId;
-    if (is_bent) {
-      mesh = add_mesh(node.mesh, &bending);
-    } else {
-      const auto [found, is_new] = mesh_of_.try_emplace(node.mesh, kNoId);
-      if (is_new) found->second = add_mesh(node.mesh, nullptr);
-      mesh = found->second;
-    }
-    if (mesh == kNoId) return;
-    const std::string& name = node.name.empty() ? file_.model().meshes[node.mesh].name : node.name;
-    if (is_skinned) {
-      // Where the node is does not count (glTF 2.0, 3.7.3.3).
-      scene_.placements.push_back({name, mesh, {}});
-      return;
-    }
-    for (const Affine& instance : instances_of(node, number)) {
-      const Affine to_world = pose().to_world[number] * instance;
-      if (is_usable(to_world))
-        scene_.placements.push_back({name, mesh, to_world, motion_of(number, instance)});
-      else
-        warn("nodes[" + std::to_string(number) + "]: an instance is singular or out of range and is skipped");
+    const std::vector<Affine> instances =
+        is_skinned ? std::vector<Affine>{Affine{}} : instances_of(node, number);
+    for (const GltfChoice& choice : choices_of(node.mesh)) {
+      GltfSharedMesh own;
+      if (is_bent) own = build(node.mesh, choice, &bending);
+      const GltfSharedMesh& mesh = is_bent ? own : unbent(node.mesh, choice);
+      if (mesh.mesh == nullptr) continue;
+      const std::string& name = node.name.empty() ? mesh.name : node.name;
+      if (is_skinned) {
+        // Where the node is does not count (glTF 2.0, 3.7.3.3).
+        scene_.placements.push_back({name, add(mesh), {}});
+      } else {
+        const std::uint32_t shared = choice.strokes ? kNoId : is_bent ? add(mesh) : number_of(node.mesh);
+        place(name, number, instances, mesh, shared);
+      }
     }
   }
 
-  /// The index in the scene of a mesh; kNoId if it has no triangles.
-  std::uint32_t add_mesh(std::uint32_t number, const GltfBending* bending) {
-    std::vector<std::string> warnings;
-    GltfBuiltMesh built = builder_.build(number, bending, warnings);
-    for (const std::string& words : warnings) warn(words);
-    if (built.mesh.triangle_count() == 0) return kNoId;
-    scene_.meshes.push_back({file_.model().meshes[number].name,
-                             std::make_shared<TriangleMesh>(std::move(built.mesh)), std::move(built.slots)});
+  /// Triangles, and points and lines of each material.
+  std::vector<GltfChoice> choices_of(std::uint32_t mesh) const {
+    std::vector<GltfChoice> choices{GltfChoice{}};
+    for (const GltfPrimitive& primitive : file_.model().meshes[mesh].primitives) {
+      const GltfChoice choice{true, primitive.material};
+      if (primitive.has_strokes() && std::ranges::find(choices, choice) == choices.end())
+        choices.push_back(choice);
+    }
+    return choices;
+  }
+
+  /// Shows a mesh at the instances of a node: that of the scene with the number `shared`, or copies of
+  /// `strokes` in the world.
+  void place(const std::string& name, std::uint32_t node, const std::vector<Affine>& instances,
+             const GltfSharedMesh& strokes, std::uint32_t shared) {
+    for (const Affine& instance : instances) {
+      const Affine to_world = pose().to_world[node] * instance;
+      if (!is_usable(to_world))
+        warn("nodes[" + std::to_string(node) + "]: an instance is singular or out of range and is skipped");
+      else if (shared != kNoId)
+        scene_.placements.push_back({name, shared, to_world, motion_of(node, instance)});
+      else
+        scene_.placements.push_back(
+            {name, add(moved(strokes, to_world)), {}, motion_of(node, instance * to_world.inverse())});
+    }
+  }
+
+  /// A mesh as the file has it; a null mesh if it is empty.
+  const GltfSharedMesh& unbent(std::uint32_t number, const GltfChoice& choice) {
+    const auto [found, is_new] = unbent_.try_emplace({number, choice});
+    if (is_new) found->second = build(number, choice, nullptr);
+    return found->second;
+  }
+
+  /// The index in the scene of the triangles of an unbent mesh, which are there.
+  std::uint32_t number_of(std::uint32_t number) {
+    const auto [found, is_new] = mesh_of_.try_emplace(number, kNoId);
+    if (is_new) found->second = add(unbent(number, {}));
+    return found->second;
+  }
+
+  std::uint32_t add(GltfSharedMesh mesh) {
+    scene_.meshes.push_back(std::move(mesh));
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
+  }
+
+  GltfSharedMesh build(std::uint32_t number, const GltfChoice& choice, const GltfBending* bending) {
+    std::vector<std::string> warnings;
+    GltfBuiltMesh built = builder_.build(number, choice, bending, warnings);
+    for (const std::string& words : warnings) warn(words);
+    GltfSharedMesh mesh;
+    mesh.name = file_.model().meshes[number].name, mesh.slots = std::move(built.slots);
+    mesh.is_strokes = choice.strokes;
+    if (built.mesh.triangle_count() > 0) mesh.mesh = std::make_shared<TriangleMesh>(std::move(built.mesh));
+    return mesh;
+  }
+
+  /// The same strokes in another place.
+  GltfSharedMesh moved(const GltfSharedMesh& strokes, const Affine& map) {
+    GltfSharedMesh out = strokes;
+    if (map.is_identity()) return out;
+    accessors_.spend(strokes.mesh->bytes());
+    out.mesh = std::make_shared<TriangleMesh>(*strokes.mesh);
+    for (Vec3f& p : out.mesh->positions) {
+      p = Vec3f(map.point(Vec3d(p)));
+      for (const float x : {p.x, p.y, p.z})
+        if (!is_coordinate(x)) file_.fail("mesh '" + strokes.name + "': placed: " + bad_coordinate(x));
+    }
+    return out;
   }
 
   /// Where a node shows its mesh, in its own space.
@@ -267,6 +323,7 @@ class SceneReader {
   std::vector<double> times_;    ///< from 0 to 1
   std::vector<GltfPose> poses_;  ///< at these
   GltfScene scene_;
+  std::map<std::pair<std::uint32_t, GltfChoice>, GltfSharedMesh> unbent_;
   std::map<std::uint32_t, std::uint32_t> mesh_of_;  ///< index in the scene, by that in the file
 };
 
@@ -274,6 +331,25 @@ class SceneReader {
 
 GltfScene load_gltf_scene(const std::string& path, const GltfOptions& options) {
   return SceneReader(path, options).run();
+}
+
+double usual_stroke_width(GltfScene& scene, const std::string& path) {
+  StrokeCount count;
+  for (const GltfSharedMesh& shared : scene.meshes)
+    if (shared.is_strokes) count.add(*shared.mesh);
+  if (count.all() == 0) return 0;
+  Box box;
+  std::map<std::uint32_t, Box> boxes;
+  for (const GltfPlacement& placement : scene.placements) {
+    const auto [found, is_new] = boxes.try_emplace(placement.mesh);
+    if (is_new)
+      each_corner(*scene.meshes[placement.mesh].mesh, [&](const Vec3f& p) { found->second.grow(p); });
+    box.grow(placement.to_world.is_identity() ? found->second
+                                              : transform_bounds(placement.to_world, found->second));
+  }
+  const double width = usual_stroke_width(box, count.all());
+  scene.warnings.push_back({Location{path}, count.width_message(width)});
+  return width;
 }
 
 bool is_gltf_file(const std::string& path) {

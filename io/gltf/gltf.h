@@ -20,6 +20,9 @@ struct GltfSharedMesh {
   std::string name;
   std::shared_ptr<TriangleMesh> mesh;
   std::vector<std::uint32_t> slots;  ///< index into the materials per slot of the mesh; kNoId: none
+  /// They are points and lines (MeshFile::strokes), in world space, which scales their places alone: a node
+  /// that is stretched does not make balls of them ellipsoids.
+  bool is_strokes = false;
 };
 
 /// A node that shows a mesh.
@@ -47,6 +50,10 @@ struct GltfScene {
 /// Reads a .gltf or .glb file, and the buffers beside it. Throws Error, with ErrorKind::io if a file cannot
 /// be read. Image files are not read.
 GltfScene load_gltf_scene(const std::string& path, const GltfOptions& options = {});
+
+/// How wide points and lines are shown if nothing is said; 0 if there are none. Adds to the warnings how wide
+/// that is.
+double usual_stroke_width(GltfScene& scene, const std::string& path);
 
 /// Whether all nodes together, each with triangles of its own, take little more than the meshes once: at most
 /// four million triangles.

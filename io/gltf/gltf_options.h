@@ -1,5 +1,5 @@
 #pragma once
-/// \file What can be asked of glTF files.
+/// \file What can be asked of glTF files, and of meshes.
 
 #include <optional>
 #include <string>
@@ -12,8 +12,11 @@ struct GltfOptions {
   std::optional<double> time;
   /// Seconds for which things move from then on. Meshes that are bent do not.
   double shutter = 0;
-  std::string variant;  ///< of KHR_materials_variants; empty: none
+  std::string variant;      ///< of KHR_materials_variants; empty: none
+  double stroke_width = 0;  ///< of points and lines, also of other meshes; 0: by their surroundings
 
+  /// Whether something is asked that only glTF files have.
+  bool is_for_gltf() const { return time || shutter != 0 || !variant.empty(); }
   bool operator==(const GltfOptions&) const = default;
 };
 

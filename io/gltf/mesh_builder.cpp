@@ -57,11 +57,13 @@ GltfElements elements_of(const std::string& name, const void* data, std::uint64_
 /// The building of one mesh.
 class Build {
  public:
-  Build(GltfAccessors& accessors, std::uint32_t number, const GltfBending* bending,
+  Build(GltfAccessors& accessors, std::uint32_t number, const GltfChoice& choice, const GltfBending* bending,
         std::vector<std::string>& warnings)
       : accessors_(accessors),
         file_(accessors.file()),
         number_(number),
+        choice_(choice),
+        strokes_(choice.strokes),
         bending_(bending),
         warnings_(warnings) {}
 
@@ -106,15 +108,13 @@ class Build {
 
   void find_parts() {
     const GltfMesh& mesh = file_.model().meshes[number_];
-    std::size_t lines = 0, unplaced = 0;
+    std::size_t unplaced = 0;
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
       const GltfPrimitive& primitive = mesh.primitives[i];
       const std::string name =
           "meshes[" + std::to_string(number_) + "].primitives[" + std::to_string(i) + "]";
-      if (primitive.mode < GltfPrimitive::kTriangles) {
-        ++lines;
+      if (primitive.has_strokes() != strokes_ || (strokes_ && primitive.material != choice_.material))
         continue;
-      }
       if (primitive.mode > GltfPrimitive::kFan) continue;  // has been told
       if (primitive.attributes.positions == kNoId) {
         ++unplaced;
@@ -130,7 +130,6 @@ class Build {
       count_corners(part);
     }
     const std::string where = "meshes[" + std::to_string(number_) + "]: ";
-    if (lines > 0) warnings_.push_back(where + "lines and points are skipped");
     if (unplaced > 0) warnings_.push_back(where + "primitives without an attribute POSITION are skipped");
   }
 
@@ -148,6 +147,8 @@ class Build {
 
   /// The accessors or Draco's numbers of what the part reads, by role.
   std::array<std::uint32_t, kRoles> roles_of(const GltfPrimitive& primitive, const GltfAttributes& a) const {
+    // Balls and capsules have normals and texture coordinates of their own.
+    if (strokes_) return {a.positions, kNoId, kNoId, kNoId, kNoId};
     const auto [first, second] = uv_sets(primitive);
     std::array<std::uint32_t, kRoles> roles{a.positions, a.normals, a.uv_set(first), kNoId, kNoId};
     const bool bends_normals = primitive.material != kNoId &&
@@ -161,6 +162,11 @@ class Build {
     const std::uint32_t material = part.primitive->material;
     if (material == kNoId) return;
     const auto [first, second] = gltf_uv_sets(file_.model().materials[material]);
+    if (strokes_) {
+      if (first != kNoId)
+        warnings_.push_back(part.name + ": textures lie around its points and lines, not by TEXCOORD");
+      return;
+    }
     for (const std::uint32_t set : {first, second})
       if (set != kNoId && part.primitive->attributes.uv_set(set) == kNoId)
         warnings_.push_back(part.name + ": has no TEXCOORD_" + std::to_string(set) +
@@ -246,13 +252,33 @@ class Build {
         file_.fail(part.elements[role].name + ": " + std::to_string(part.elements[role].count) +
                    " elements for " + std::to_string(vertices) + " vertices of " + part.name);
     part.corners = part.is_indexed ? part.indices.count : vertices;
-    if (part.primitive->mode == GltfPrimitive::kTriangles || part.draco != nullptr) {
+    if (strokes_) {
+      part.triangles = stroke_count(part);
+    } else if (part.primitive->mode == GltfPrimitive::kTriangles || part.draco != nullptr) {
       if (part.corners % 3 != 0)
         warnings_.push_back(part.name + ": expected three corners for each triangle, found " +
                             std::to_string(part.corners) + " in all; the last ones are left out");
       part.triangles = part.corners / 3;
     } else {
       part.triangles = part.corners < 3 ? 0 : part.corners - 2;
+    }
+  }
+
+  /// How many points and lines the part's corners make.
+  std::uint64_t stroke_count(const Part& part) {
+    const std::uint64_t corners = part.corners;
+    switch (part.primitive->mode) {
+      case GltfPrimitive::kPoints:
+        return corners;
+      case GltfPrimitive::kLines:
+        if (corners % 2 != 0)
+          warnings_.push_back(part.name + ": expected two ends for each line, found " +
+                              std::to_string(corners) + " in all; the last one is left out");
+        return corners / 2;
+      case GltfPrimitive::kLineLoop:
+        return corners < 2 ? 0 : corners;
+      default:
+        return corners < 2 ? 0 : corners - 1;
     }
   }
 
@@ -310,7 +336,8 @@ class Build {
   void read_corners(Part& part) {
     std::uint32_t* const out = out_.mesh.indices.data() + 3 * part.first_triangle;
     const std::uint64_t vertices = part.elements[kPositions].count;
-    const bool is_list = part.primitive->mode == GltfPrimitive::kTriangles || part.draco != nullptr;
+    const bool is_list =
+        !strokes_ && (part.primitive->mode == GltfPrimitive::kTriangles || part.draco != nullptr);
     // There is only room for the corners of whole triangles.
     const bool in_place = is_list && part.corners == 3 * part.triangles;
     Column<std::uint32_t> row;
@@ -321,7 +348,15 @@ class Build {
     const auto corner = [&](std::uint64_t i) {
       return part.is_indexed ? row[i] : static_cast<std::uint32_t>(i);
     };
-    if (is_list) {
+    if (strokes_) {
+      const int mode = part.primitive->mode;
+      for (std::uint64_t i = 0; i < part.triangles; ++i) {
+        const std::uint64_t from = mode == GltfPrimitive::kLines ? 2 * i : i;
+        out[3 * i] = corner(from);
+        out[3 * i + 1] = out[3 * i + 2] =
+            mode == GltfPrimitive::kPoints ? corner(from) : corner((from + 1) % part.corners);
+      }
+    } else if (is_list) {
       if (!part.is_indexed || !in_place)
         for (std::uint64_t i = 0; i < 3 * part.triangles; ++i) out[i] = corner(i);
     } else {
@@ -566,6 +601,8 @@ class Build {
   GltfAccessors& accessors_;
   const GltfFile& file_;
   const std::uint32_t number_;
+  const GltfChoice choice_;
+  const bool strokes_;
   const GltfBending* const bending_;
   std::vector<std::string>& warnings_;
   std::vector<Part> parts_;
@@ -579,9 +616,9 @@ class Build {
 
 }  // namespace
 
-GltfBuiltMesh GltfMeshBuilder::build(std::uint32_t number, const GltfBending* bending,
-                                     std::vector<std::string>& warnings) {
-  Build build(accessors_, number, bending, warnings);
+GltfBuiltMesh GltfMeshBuilder::build(std::uint32_t number, const GltfChoice& choice,
+                                     const GltfBending* bending, std::vector<std::string>& warnings) {
+  Build build(accessors_, number, choice, bending, warnings);
   accessors_.spend(build.measure());
   return build.run();
 }

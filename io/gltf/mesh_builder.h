@@ -17,6 +17,14 @@ struct GltfBuiltMesh {
   std::vector<std::uint32_t> slots;
 };
 
+/// Which primitives of a mesh.
+struct GltfChoice {
+  bool strokes = false;            ///< points and lines (MeshFile::strokes), not triangles
+  std::uint32_t material = kNoId;  ///< of points and lines: those with it
+
+  auto operator<=>(const GltfChoice&) const = default;
+};
+
 /// How a mesh is bent.
 struct GltfBending {
   std::vector<double> weights;  ///< of morph targets; may be shorter than their lists
@@ -28,9 +36,10 @@ class GltfMeshBuilder {
  public:
   explicit GltfMeshBuilder(GltfAccessors& accessors) : accessors_(accessors) {}
 
-  /// All triangles of the mesh with this number, bent if `bending` is not null. Throws Error. What is left
-  /// out is added to `warnings`.
-  GltfBuiltMesh build(std::uint32_t number, const GltfBending* bending, std::vector<std::string>& warnings);
+  /// What the mesh with this number has of the choice, bent if `bending` is not null. Throws Error. What is
+  /// left out is added to `warnings`.
+  GltfBuiltMesh build(std::uint32_t number, const GltfChoice& choice, const GltfBending* bending,
+                      std::vector<std::string>& warnings);
 
  private:
   GltfAccessors& accessors_;

@@ -107,6 +107,7 @@ struct GltfAttributes {
 };
 
 struct GltfPrimitive {
+  static constexpr int kPoints = 0, kLines = 1, kLineLoop = 2, kLineStrip = 3;
   static constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
 
   int mode = kTriangles;  ///< [0, 6]; 7: of none of these
@@ -116,6 +117,8 @@ struct GltfPrimitive {
   GltfAttributes draco_attributes;
   std::vector<GltfAttributes> targets;              ///< what morph targets add
   std::map<std::uint32_t, std::uint32_t> variants;  ///< materials by the numbers of variants
+
+  bool has_strokes() const { return mode < kTriangles; }
 };
 
 struct GltfMesh {

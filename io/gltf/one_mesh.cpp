@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -237,8 +238,8 @@ class Slots {
 
   std::vector<Material> materials;
   /// Per mesh of the scene and slot of it; empty if all are in slot 0.
-  std::vector<std::vector<std::uint16_t>> take() {
-    return materials.size() > 1 ? std::move(own_) : std::vector<std::vector<std::uint16_t>>{};
+  std::vector<std::vector<std::uint16_t>> numbers() const {
+    return materials.size() > 1 ? own_ : std::vector<std::vector<std::uint16_t>>{};
   }
 
  private:
@@ -259,6 +260,17 @@ class Slots {
 
 }  // namespace
 
+/// All that the placements of a scene show.
+static TriangleMesh joined(const std::string& path, GltfScene& scene, const Slots& slots) {
+  const bool is_whole =
+      scene.placements.size() == 1 && scene.meshes.size() == 1 && scene.placements[0].to_world.is_identity();
+  if (is_whole) return std::move(*scene.meshes[0].mesh);
+  if (scene.placements.empty()) return {};
+  TriangleMesh mesh = Joining(path, scene).run(slots.numbers());
+  mesh.attributes = AttributeJoining(scene, mesh).run(path, scene.warnings);
+  return mesh;
+}
+
 bool can_be_one_mesh(const GltfScene& scene) {
   return placed(scene).most() <= once(scene).most() + kMostAdded;
 }
@@ -271,12 +283,12 @@ MeshFile one_mesh(const std::string& path, GltfScene scene) {
                     " are different; too many for one mesh, but 'include' keeps them as instances");
   MeshFile file;
   Slots slots(path, scene);
-  const bool is_whole = scene.placements.size() == 1 && scene.placements[0].to_world.is_identity();
-  if (is_whole) {
-    file.mesh = std::move(*scene.meshes[0].mesh);
-  } else {
-    file.mesh = Joining(path, scene).run(slots.take());
-    file.mesh.attributes = AttributeJoining(scene, file.mesh).run(path, scene.warnings);
+  std::vector<GltfPlacement> all = std::move(scene.placements);
+  for (const bool strokes : {false, true}) {
+    scene.placements.clear();
+    std::ranges::copy_if(all, std::back_inserter(scene.placements),
+                         [&](const GltfPlacement& p) { return scene.meshes[p.mesh].is_strokes == strokes; });
+    (strokes ? file.strokes : file.mesh) = joined(path, scene, slots);
   }
   const bool has_materials = std::ranges::any_of(scene.meshes, [](const GltfSharedMesh& m) {
     return std::ranges::any_of(m.slots, [](auto s) { return s != kNoId; });
@@ -286,10 +298,11 @@ MeshFile one_mesh(const std::string& path, GltfScene scene) {
     file.textures = std::move(scene.textures), file.media = std::move(scene.media);
     file.texture_places = std::move(scene.texture_places);
   } else {
-    file.mesh.material_slots.clear();
+    file.mesh.material_slots.clear(), file.strokes.material_slots.clear();
   }
   file.warnings = std::move(scene.warnings);
-  if (file.mesh.triangle_count() == 0) file.warnings.push_back({Location{path}, "no triangles"});
+  if (file.mesh.triangle_count() + file.strokes.triangle_count() == 0)
+    file.warnings.push_back({Location{path}, "no triangles"});
   return file;
 }
 

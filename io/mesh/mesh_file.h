@@ -13,10 +13,13 @@ namespace oktett {
 
 /// Everything in a mesh file that can be rendered.
 struct MeshFile {
-  TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
-  std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
-  std::vector<Texture> textures;    ///< what the materials' texture indices refer to
-  std::vector<Medium> media;        ///< what Material::interior refers to
+  TriangleMesh mesh;  ///< polygons are triangulated; mesh.material_slots indexes `materials`
+  /// Points and lines, as triangles without area: the corners of a point are a, a, a, those of a line a, b,
+  /// b. Slots are those of `mesh`.
+  TriangleMesh strokes;
+  std::vector<Material> materials;       ///< in order of first use; empty if no face names a material
+  std::vector<Texture> textures;         ///< what the materials' texture indices refer to
+  std::vector<Medium> media;             ///< what Material::interior refers to
   std::vector<Location> texture_places;  ///< where each texture is named first
   std::vector<Location>
       material_places;            ///< where a file defines each material, if it has lines; may be shorter

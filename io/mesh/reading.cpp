@@ -7,8 +7,8 @@
 namespace oktett {
 
 MeshOddities& MeshOddities::operator+=(const MeshOddities& later) {
-  for (const auto member : {&MeshOddities::crossings, &MeshOddities::small_faces, &MeshOddities::bad_normals,
-                            &MeshOddities::no_normals, &MeshOddities::no_uvs})
+  for (const auto member : {&MeshOddities::crossings, &MeshOddities::small_faces, &MeshOddities::short_lines,
+                            &MeshOddities::bad_normals, &MeshOddities::no_normals, &MeshOddities::no_uvs})
     this->*member += later.*member;
   return *this;
 }
@@ -20,6 +20,8 @@ void MeshOddities::report(const std::function<void(const char*, std::string)>& n
   say(crossings, "a face crosses itself: its triangles may overlap",
       " faces cross themselves: their triangles may overlap");
   say(small_faces, "a face of fewer than 3 corners is skipped", " faces of fewer than 3 corners are skipped");
+  say(short_lines, "a line or point without vertices to join is skipped",
+      " lines or points without vertices to join are skipped");
   say(bad_normals, "a normal is not finite: corners that have it show the normal of their face",
       " normals are not finite: corners that have them show the normal of their face");
   say(no_normals, "a corner names a normal, but the file defines none",

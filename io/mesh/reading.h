@@ -41,6 +41,8 @@ struct MeshStatement {
 /// Depends on the content of the mesh file alone.
 struct ParsedMesh {
   TriangleMesh mesh;
+  Column<std::uint32_t> strokes;         ///< points and lines: two vertices of each, the same of a point
+  Column<std::uint16_t> stroke_slots;    ///< one for each, or empty
   std::vector<MeshStatement> libraries;  ///< what follows `mtllib` in an OBJ file
   std::vector<MeshStatement> materials;  ///< names of the material slots of the mesh
   std::vector<MeshStatement> textures;   ///< file names of images, each a slot, where there are no materials
@@ -83,6 +85,7 @@ struct Tally {
 struct MeshOddities {
   Tally crossings;    ///< faces that cross themselves
   Tally small_faces;  ///< faces of fewer than three corners
+  Tally short_lines;  ///< lines of fewer than two vertices
   Tally bad_normals;  ///< normals that are not finite
   Tally no_normals;   ///< corners that name a normal where the file defines none
   Tally no_uvs;       ///< the same of texture coordinates

@@ -169,20 +169,23 @@ class Slots {
 
 struct Run {
   ObjChunk* chunk;
-  ObjMaterialUse use;  ///< `triangle` counted from the start of the file
+  ObjMaterialUse use;  ///< `triangle` and `stroke` counted from the start of the file
 };
 
-/// The statements that some face follows before the next one, in order.
-std::vector<Run> collect_runs(std::vector<ObjChunk>& chunks, std::uint64_t triangle_count) {
+/// The statements that some face, point or line follows before the next one, in order.
+std::vector<Run> collect_runs(std::vector<ObjChunk>& chunks, std::uint64_t triangles, std::uint64_t strokes) {
   std::vector<Run> runs;
+  const auto is_at = [](const Run& run, std::uint64_t triangle, std::uint64_t stroke) {
+    return run.use.triangle == triangle && run.use.stroke == stroke;
+  };
   for (ObjChunk& chunk : chunks) {
     for (ObjMaterialUse use : chunk.material_uses) {
-      use.triangle += chunk.before.triangles;
-      if (!runs.empty() && runs.back().use.triangle == use.triangle) runs.pop_back();
+      use.triangle += chunk.before.triangles, use.stroke += chunk.before.strokes;
+      if (!runs.empty() && is_at(runs.back(), use.triangle, use.stroke)) runs.pop_back();
       runs.push_back({&chunk, use});
     }
   }
-  if (!runs.empty() && runs.back().use.triangle == triangle_count) runs.pop_back();
+  if (!runs.empty() && is_at(runs.back(), triangles, strokes)) runs.pop_back();
   return runs;
 }
 
@@ -219,25 +222,33 @@ void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedMesh& p
   for (const ObjChunk& chunk : chunks)
     for (const ObjLibrary& library : chunk.libraries)
       parsed.libraries.push_back({offset(library.where), std::string(library.names), {}});
-  const std::size_t count = parsed.mesh.triangle_count();
-  const std::vector<Run> runs = collect_runs(chunks, count);
+  const std::size_t count = parsed.mesh.triangle_count(), strokes = parsed.strokes.size() / 2;
+  const std::vector<Run> runs = collect_runs(chunks, count, strokes);
   if (runs.empty()) return;
 
   constexpr std::size_t max_slots = std::numeric_limits<std::uint16_t>::max();
   Slots slots(parsed.materials);
   parsed.mesh.material_slots.resize_uninitialized(count);
+  parsed.stroke_slots.resize_uninitialized(strokes);
   std::uint16_t* const out = parsed.mesh.material_slots.data();
-  const std::uint64_t first = runs.front().use.triangle;
-  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", MeshStatement::kNowhere)));
+  std::uint16_t* const of_strokes = parsed.stroke_slots.data();
+  const ObjMaterialUse& first = runs.front().use;
+  if (first.triangle + first.stroke > 0) {
+    const auto slot = static_cast<std::uint16_t>(slots.of("", MeshStatement::kNowhere));
+    std::fill_n(out, first.triangle, slot), std::fill_n(of_strokes, first.stroke, slot);
+  }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ObjMaterialUse& use = runs[i].use;
-    const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].use.triangle : count;
+    const bool is_last = i + 1 == runs.size();
+    const std::uint64_t end = is_last ? count : runs[i + 1].use.triangle,
+                        stroke_end = is_last ? strokes : runs[i + 1].use.stroke;
     const std::size_t slot = slots.of(use.name, offset(use.where));
     if (slot >= max_slots) {
       runs[i].chunk->fail(use.where, "more than " + std::to_string(max_slots) + " materials");
       return;
     }
     std::fill(out + use.triangle, out + end, static_cast<std::uint16_t>(slot));
+    std::fill(of_strokes + use.stroke, of_strokes + stroke_end, static_cast<std::uint16_t>(slot));
   }
 }
 

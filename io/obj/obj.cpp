@@ -12,6 +12,7 @@
 
 #include "core/phase.h"
 #include "io/mesh/recentre.h"
+#include "io/mesh/strokes.h"
 #include "io/obj/parsed_obj.h"
 #include "io/text/file_content.h"
 
@@ -91,6 +92,7 @@ class ObjLoad {
     check_limit(path_, total_.uvs, "uvs", options_.max_elements);
     check_limit(path_, total_.normals, "normals", options_.max_elements);
     check_limit(path_, total_.triangles, "triangles", options_.max_elements);
+    check_limit(path_, total_.strokes, "points and lines", options_.max_elements);
     const bool has_slash =
         std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_slash; });
     TriangleMesh& mesh = obj_.mesh;
@@ -99,6 +101,7 @@ class ObjLoad {
     mesh.uvs.resize_uninitialized(total_.uvs);
     mesh.normals.resize_uninitialized(total_.normals);
     mesh.indices.resize_uninitialized(3 * total_.triangles);
+    obj_.strokes.resize_uninitialized(2 * total_.strokes);
     if (has_slash && total_.uvs > 0) mesh.uv_indices.resize_uninitialized(3 * total_.triangles);
     if (has_slash && total_.normals > 0) mesh.normal_indices.resize_uninitialized(3 * total_.triangles);
   }
@@ -108,24 +111,20 @@ class ObjLoad {
       const ObjCounts& counts = chunk.counts;
       if (counts.positions + counts.uvs + counts.normals + counts.painted == 0) return;
       read_vertices(chunk, obj_.mesh, colors_);
-      if (counts.faces == 0) file_.release(chunk.begin, chunk.end);
+      if (counts.faces + counts.strokes == 0) file_.release(chunk.begin, chunk.end);
     };
     for_each_chunk(read);
     sum_colors();
     // Some may have begun in the middle of chunks, or were no bytes behind those that were.
     const bool missed = colors_.levels.empty() || !all_colors_.are_bytes || all_colors_.greatest > 1;
-    if (all_colors_.count == 0 || !colors_.numbers.empty() || !missed || total_.triangles == 0 ||
-        first_failure())
-      return;
+    if (all_colors_.count == 0 || !colors_.numbers.empty() || !missed || first_failure()) return;
     colors_ = {};
     colors_.numbers.resize_uninitialized(3 * total_.positions);
     oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) { read(chunks_[i]); });
     sum_colors();
   }
 
-  /// Nothing shows the colours of points.
   void allocate_colors() {
-    if (total_.triangles == 0) return;
     const auto any = [this](bool ObjChunk::*has) { return std::ranges::any_of(chunks_, has); };
     const bool bytes = std::ranges::all_of(
         chunks_, [](const ObjChunk& chunk) { return chunk.has_levels || !chunk.has_colors; });
@@ -151,7 +150,7 @@ class ObjLoad {
                                       " more, are white");
     } else if (painted) {
       set_colors(obj_.mesh, all_colors_, std::move(colors_));
-    } else if (total_.painted > 0 && total_.triangles > 0) {
+    } else if (total_.painted > 0) {
       obj_.notices.push_back({0,
                               std::to_string(total_.painted) + " colours of '#MRGB' for " +
                                   std::to_string(total_.positions) + " vertices are not read",
@@ -173,8 +172,8 @@ class ObjLoad {
   void read_all_faces() {
     const ObjFaceOptions options{.positions_known = !first_failure()};
     for_each_chunk([&](ObjChunk& chunk) {
-      if (chunk.counts.faces == 0) return;
-      read_faces(chunk, total_, obj_.mesh, options);
+      if (chunk.counts.faces + chunk.counts.strokes == 0) return;
+      read_faces(chunk, total_, obj_, options);
       file_.release(chunk.begin, chunk.end);
     });
   }
@@ -201,17 +200,11 @@ class ObjLoad {
     if (!uses_normals) obj_.mesh.normal_indices.clear();
   }
 
-  /// One warning for lines and points together, and one for each unknown keyword.
+  /// One warning for each unknown keyword.
   void note_skipped() {
     std::vector<std::string_view> seen;
-    bool lines_seen = false;
     for (const ObjChunk& chunk : chunks_) {
       for (const ObjSkipped& skipped : chunk.skipped) {
-        if (skipped.keyword == "l" || skipped.keyword == "p") {
-          if (!lines_seen) note(skipped.where, "lines and points are skipped");
-          lines_seen = true;
-          continue;
-        }
         if (std::find(seen.begin(), seen.end(), skipped.keyword) != seen.end()) continue;
         if (seen.size() == kMaxSkippedKeywords) {
           note(skipped.where, "more unknown keywords are ignored");
@@ -296,10 +289,22 @@ static void add_texture_materials(const std::string& path, const std::vector<Mes
   file.materials.push_back(image_material("without image", kNoId));
 }
 
+/// Vertices without faces, points and lines are points.
+static void take_strokes(ParsedMesh& parsed, MeshFile& file) {
+  const auto vertices = static_cast<std::uint32_t>(file.mesh.positions.size());
+  if (!parsed.has_faces && parsed.strokes.empty()) {
+    parsed.strokes.resize_uninitialized(2 * std::size_t{vertices});
+    for (std::uint32_t i = 0; i < vertices; ++i) parsed.strokes[2 * i] = parsed.strokes[2 * i + 1] = i;
+  }
+  if (parsed.strokes.empty()) return;
+  file.strokes = make_strokes(file.mesh, parsed.strokes, std::move(parsed.stroke_slots));
+}
+
 MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
                      const std::function<TextPosition(std::uint64_t)>& position) {
   MeshFile obj;
   obj.mesh = std::move(parsed.mesh);
+  take_strokes(parsed, obj);
   // Those about materials stand before others of the same place.
   std::vector<MeshStatement> notices;
   resolve_materials(parsed.libraries, parsed.materials, path, obj, notices);
@@ -311,7 +316,7 @@ MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
     const TextPosition place = position(notice.at);
     warnings.push_back({Location{path, place.line, place.column}, notice.words});
   }
-  if (!parsed.has_faces) warnings.push_back({Location{path}, "no faces"});
+  if (!parsed.has_faces && obj.strokes.indices.empty()) warnings.push_back({Location{path}, "no faces"});
   obj.warnings.insert(obj.warnings.begin(), warnings.begin(), warnings.end());
   return obj;
 }

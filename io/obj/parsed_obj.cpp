@@ -36,8 +36,8 @@ void note_brace(ObjChunk& chunk, const char* where, bool open, const char* rest)
 }
 
 void note_skipped(ObjChunk& chunk, const char* where, std::string_view keyword) {
-  // Room for `l`, `p` and the one that is too many.
-  if (chunk.skipped.size() >= kMaxSkippedKeywords + 3) return;
+  // Room for the one that is too many.
+  if (chunk.skipped.size() > kMaxSkippedKeywords) return;
   for (const ObjSkipped& known : chunk.skipped)
     if (known.keyword == keyword) return;
   chunk.skipped.push_back({where, keyword});
@@ -56,7 +56,8 @@ void note_statement(ObjChunk& chunk, const char* p) {
   if (!is_printable_word(keyword)) {
     chunk.fail(p, "expected an OBJ keyword, found " + quote_word(p));
   } else if (keyword == "usemtl") {
-    chunk.material_uses.push_back({p, trimmed(rest, statement_end(p)), chunk.counts.triangles});
+    chunk.material_uses.push_back(
+        {p, trimmed(rest, statement_end(p)), chunk.counts.triangles, chunk.counts.strokes});
   } else if (keyword == "mtllib") {
     chunk.libraries.push_back({p, trimmed(rest, statement_end(p))});
   } else if (keyword == "{" || keyword == "vertices{" || keyword == "triangles{") {
@@ -80,6 +81,14 @@ const char* count_face(ObjChunk& chunk, const char* p) {
   ++chunk.counts.faces;
   chunk.has_slash = chunk.has_slash || shape.slash || !shape.plain();
   return shape.continued() ? find_joined_line_end(p) : shape.end;
+}
+
+/// Whether the points or the line of a `p` or `l` are at `p`.
+bool is_stroke(const char* p) { return (p[0] == 'p' || p[0] == 'l') && is_delimiter(p + 1); }
+
+/// How many strokes a `p` or `l` of so many vertices is.
+std::uint64_t stroke_count(char keyword, std::uint64_t vertices) {
+  return keyword == 'p' ? vertices : std::max<std::uint64_t>(vertices, 1) - 1;
 }
 
 constexpr std::string_view kPaint = "#MRGB ";
@@ -122,6 +131,8 @@ const char* count_line(ObjChunk& chunk, const char* p) {
     ++chunk.counts.normals;
   else if (p[0] == 'v' && p[1] == 't' && is_delimiter(p + 2))
     ++chunk.counts.uvs;
+  else if (is_stroke(p))
+    chunk.counts.strokes += stroke_count(p[0], count_words(p) - 1);
   else if (p[0] == '#')
     note_comment(chunk, p);
   else if (!is_line_end(p[0]))
@@ -355,21 +366,23 @@ struct Corner {
 
 class FaceReader {
  public:
-  FaceReader(ObjChunk& chunk, const ObjCounts& total, TriangleMesh& mesh, const ObjFaceOptions& options)
+  FaceReader(ObjChunk& chunk, const ObjCounts& total, ParsedMesh& parsed, const ObjFaceOptions& options)
       : chunk_(chunk),
         total_(total),
-        mesh_(mesh),
+        mesh_(parsed.mesh),
+        strokes_(parsed.strokes),
         options_(options),
         // Triangles without slashes are read by the short way, which writes positions alone.
-        short_way_(mesh.normal_indices.empty() && mesh.uv_indices.empty()),
+        short_way_(mesh_.normal_indices.empty() && mesh_.uv_indices.empty()),
         next_(chunk.before),
-        last_triangle_(chunk.before.triangles + chunk.counts.triangles) {}
+        last_triangle_(chunk.before.triangles + chunk.counts.triangles),
+        last_stroke_(chunk.before.strokes + chunk.counts.strokes) {}
 
   void run() {
     read_lines(chunk_, [this](const char* p) {
       if (p[0] == 'f' && is_delimiter(p + 1)) return read_face(p);
       if (p[0] == 'v') count_vertex(p);
-      return p;
+      return is_stroke(p) ? read_stroke(p) : p;
     });
   }
 
@@ -384,9 +397,8 @@ class FaceReader {
       ++next_.normals;
   }
 
-  const char* read_face(const char* p) {
-    if (short_way_)
-      if (const char* rest = read_plain_triangle(p + 1)) return rest;
+  /// The corners behind a keyword of one letter.
+  const char* read_corners(const char* p) {
     corners_.clear();
     const char* end = next_word(p + 1);
     while (!is_line_end(*end)) {
@@ -394,6 +406,30 @@ class FaceReader {
       end = next_word(read_corner(end, corner));
       corners_.push_back(corner);
     }
+    return end;
+  }
+
+  /// Points, or a line from vertex to vertex. Their uv has no use.
+  const char* read_stroke(const char* p) {
+    const bool used_uvs = chunk_.uses_uvs, used_normals = chunk_.uses_normals;
+    const char* const end = read_corners(p);
+    chunk_.uses_uvs = used_uvs, chunk_.uses_normals = used_normals;
+    const std::uint64_t count = stroke_count(p[0], corners_.size());
+    if (count == 0) chunk_.oddities.short_lines.add(p);
+    if (count > last_stroke_ - next_.strokes) stop_changed(p);
+    std::uint32_t* out = strokes_.data() + 2 * next_.strokes;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      *out++ = corners_[i].position;
+      *out++ = corners_[p[0] == 'p' ? i : i + 1].position;
+    }
+    next_.strokes += count;
+    return end;
+  }
+
+  const char* read_face(const char* p) {
+    if (short_way_)
+      if (const char* rest = read_plain_triangle(p + 1)) return rest;
+    const char* const end = read_corners(p);
     if (corners_.size() < 3) {
       chunk_.oddities.small_faces.add(p);
       return end;
@@ -503,10 +539,11 @@ class FaceReader {
   ObjChunk& chunk_;
   const ObjCounts& total_;
   TriangleMesh& mesh_;
+  Column<std::uint32_t>& strokes_;
   const ObjFaceOptions options_;
   const bool short_way_;
   ObjCounts next_;
-  const std::uint64_t last_triangle_;
+  const std::uint64_t last_triangle_, last_stroke_;
   std::vector<Corner> corners_;
   std::vector<Vec3f> points_;
   PolygonTriangulator triangulator_;
@@ -514,8 +551,8 @@ class FaceReader {
 
 }  // namespace
 
-void read_faces(ObjChunk& chunk, const ObjCounts& total, TriangleMesh& mesh, const ObjFaceOptions& options) {
-  FaceReader(chunk, total, mesh, options).run();
+void read_faces(ObjChunk& chunk, const ObjCounts& total, ParsedMesh& parsed, const ObjFaceOptions& options) {
+  FaceReader(chunk, total, parsed, options).run();
 }
 
 }  // namespace oktett

@@ -33,20 +33,21 @@ struct ObjCounts {
   std::uint64_t normals = 0;
   std::uint64_t faces = 0;
   std::uint64_t triangles = 0;
+  std::uint64_t strokes = 0;  ///< points of `p`, and parts of lines of `l`
   std::uint64_t painted = 0;  ///< colours of `#MRGB`
 
   ObjCounts& operator+=(const ObjCounts& b) {
     positions += b.positions, uvs += b.uvs, normals += b.normals, faces += b.faces, triangles += b.triangles;
-    painted += b.painted;
+    strokes += b.strokes, painted += b.painted;
     return *this;
   }
 };
 
-/// A `usemtl`: the triangles from `triangle` on have the material `name`.
+/// A `usemtl`: the triangles from `triangle` and the strokes from `stroke` on have the material `name`.
 struct ObjMaterialUse {
   const char* where;
   std::string_view name;
-  std::uint64_t triangle;  ///< counted from the start of the chunk
+  std::uint64_t triangle, stroke;  ///< counted from the start of the chunk
 };
 
 /// A `mtllib` with all that follows it on its line.
@@ -154,10 +155,10 @@ struct ObjFaceOptions {
   bool positions_known = true;
 };
 
-/// Reads the faces of a counted chunk to their place in the index columns of `mesh`, which have their final
-/// size (those of normals and uvs may be empty if the file has none). Stops at the first failure in the
-/// chunk.
-void read_faces(ObjChunk& chunk, const ObjCounts& total, TriangleMesh& mesh, const ObjFaceOptions& options);
+/// Reads the faces of a counted chunk to their place in the index columns of the mesh, which have their final
+/// size (those of normals and uvs may be empty if the file has none), and points and lines to theirs in
+/// `strokes`. Stops at the first failure in the chunk.
+void read_faces(ObjChunk& chunk, const ObjCounts& total, ParsedMesh& parsed, const ObjFaceOptions& options);
 
 /// The files that the text behind `mtllib` names, relative to `directory`. Names may contain blanks: text
 /// that names an existing file is one name, else a name ends at a word that ends in `.mtl`.

@@ -174,6 +174,26 @@ class AsciiBody final : public PlyBody {
     });
   }
 
+  void read_edges(const PlyEdges& edges, const PlyChunk& chunk, PlyEdgeWriter& writer) const override {
+    const std::vector<PlyProperty>& properties = edges.element->properties;
+    for_each_line(chunk.begin, chunk.end, chunk.records, [&](const char* p) {
+      std::array<std::int64_t, 2> index{};
+      std::array<const char*, 2> where{};
+      for (std::size_t i = 0; i < properties.size(); ++i) {
+        const auto end = std::ranges::find(edges.ends, i) - edges.ends.begin();
+        if (end == 2) {
+          p = skip_property(p, properties[i]);
+          continue;
+        }
+        const auto k = static_cast<std::size_t>(end);
+        where[k] = skip_plain_blanks(p);
+        p = read_index(p, properties[i], index[k]);
+      }
+      expect_end(p);
+      for (std::size_t k = 0; k < 2; ++k) writer.add(index[k], where[k]);
+    });
+  }
+
  private:
   /// The extra of property `i`, or null.
   static const PlyExtra* extra_of(const PlyPart& part, std::size_t i) {

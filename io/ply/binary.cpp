@@ -101,6 +101,13 @@ class BinaryBody final : public PlyBody {
     });
   }
 
+  void read_edges(const PlyEdges& edges, const PlyChunk& chunk, PlyEdgeWriter& writer) const override {
+    for_each_record(edges, chunk, [&](std::uint64_t, const std::vector<const char*>& starts) {
+      for (const std::size_t end : edges.ends)
+        writer.add(load_whole(edges.element->properties[end].type, swap_, starts[end]), starts[end]);
+    });
+  }
+
  private:
   double number_of(const PlyPart& part, const PlyExtra& extra, const char* p) const {
     const PlyType type = part.element->properties[static_cast<std::size_t>(extra.property)].type;

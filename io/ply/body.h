@@ -55,6 +55,12 @@ struct PlyFaces : PlyPart {
   int texcoords = PlyElement::kNone;
 };
 
+/// `edge`: the properties that name its two vertices.
+struct PlyEdges : PlyPart {
+  std::array<std::size_t, 2> ends{};
+  std::uint64_t before = 0;  ///< edges of other elements before it
+};
+
 /// Where the columns of vertices stand.
 struct PlyVertexColumns {
   float* at(std::size_t role, std::uint64_t vertex) const {
@@ -120,6 +126,24 @@ class PlyFaceWriter {
   MeshOddities oddities_;
 };
 
+/// Writes the ends of edges to a column of two per edge that has its final size.
+class PlyEdgeWriter {
+ public:
+  PlyEdgeWriter(const PlyEdges& edges, const PlyChunk& chunk, std::uint64_t vertices,
+                Column<std::uint32_t>& ends)
+      : vertices_(vertices), next_(ends.data() + 2 * (edges.before + chunk.first)) {}
+
+  /// The next end, in the order of the file. Throws MeshFailure if there is no such vertex.
+  void add(std::int64_t index, const char* where);
+
+ private:
+  std::uint64_t vertices_;
+  std::uint32_t* next_;
+};
+
+/// Throws MeshFailure if there is no such vertex.
+void check_ply_index(std::int64_t index, std::uint64_t vertices, const char* where);
+
 /// Triangles of a polygon; none if it has too few corners.
 std::uint64_t count_polygon(std::uint64_t corners);
 class StripCounter {
@@ -150,6 +174,7 @@ class PlyBody {
   virtual void read_vertices(const PlyVertices& vertices, const PlyChunk& chunk,
                              const PlyVertexColumns& columns) const = 0;
   virtual void read_faces(const PlyFaces& faces, const PlyChunk& chunk, PlyFaceWriter& writer) const = 0;
+  virtual void read_edges(const PlyEdges& edges, const PlyChunk& chunk, PlyEdgeWriter& writer) const = 0;
 };
 
 /// `text` is that of the whole file.

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -33,10 +34,19 @@ void PlyFaceWriter::begin(const char* where) {
   uvs_.clear();
 }
 
-void PlyFaceWriter::check_index(std::int64_t index, const char* where) const {
-  if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_)
+void check_ply_index(std::int64_t index, std::uint64_t vertices, const char* where) {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
     stop_at(where, "vertex index " + std::to_string(index) + " is out of range: the file has " +
-                       std::to_string(vertex_count_) + " vertices");
+                       std::to_string(vertices) + " vertices");
+}
+
+void PlyEdgeWriter::add(std::int64_t index, const char* where) {
+  check_ply_index(index, vertices_, where);
+  *next_++ = static_cast<std::uint32_t>(index);
+}
+
+void PlyFaceWriter::check_index(std::int64_t index, const char* where) const {
+  check_ply_index(index, vertex_count_, where);
 }
 
 void PlyFaceWriter::add_index(std::int64_t index, const char* where) {
@@ -108,6 +118,8 @@ static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec2f) == 2 * sizeof(
 
 /// The loading of one file, step by step.
 class PlyLoad {
+  static constexpr std::array<const char*, 2> kEdgeEnds{"vertex1", "vertex2"};
+
  public:
   PlyLoad(const std::string& path, const MeshReadOptions& options)
       : path_(path), options_(options), file_(path), text_(without_byte_order_mark(file_.text())) {}
@@ -125,6 +137,7 @@ class PlyLoad {
       allocate();
       read_vertices();
       read_faces();
+      read_edges();
     } catch (const MeshFailure& failure) {
       const bool is_line = in_header_ || header_.format == PlyFormat::ascii || failure.where < header_.body;
       (is_line ? fail_at_line : fail_at_byte)(path_, is_line ? text_ : file_.text(), failure);
@@ -138,6 +151,7 @@ class PlyLoad {
   void choose_parts() {
     for (const MeshFailure& notice : header_.notices) note(notice.where, notice.message);
     faces_.reserve(header_.elements.size());
+    edges_.reserve(header_.elements.size());
     others_.reserve(header_.elements.size());
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") {
@@ -145,6 +159,8 @@ class PlyLoad {
         parts_.push_back(&vertices_);
       } else if (element.name == "face" || element.name == "tristrips") {
         parts_.push_back(&choose_faces(element));
+      } else if (element.name == "edge" && is_edge(element)) {
+        parts_.push_back(&choose_edges(element));
       } else {
         parts_.push_back(&others_.emplace_back());
         if (element.count > 0) note(element.where, "element " + quote_name(element.name) + " is not read");
@@ -189,6 +205,24 @@ class PlyLoad {
     if (texcoords != PlyElement::kNone && element.properties[static_cast<std::size_t>(texcoords)].is_list)
       faces.texcoords = texcoords;
     return faces;
+  }
+
+  static bool is_edge(const PlyElement& element) {
+    return std::ranges::all_of(kEdgeEnds, [&](const char* name) {
+      const int i = scalar(element, name);
+      return i != PlyElement::kNone && is_whole(element.properties[static_cast<std::size_t>(i)].type);
+    });
+  }
+
+  PlyEdges& choose_edges(const PlyElement& element) {
+    PlyEdges& edges = edges_.emplace_back();
+    for (std::size_t k = 0; k < 2; ++k)
+      edges.ends[k] = static_cast<std::size_t>(scalar(element, kEdgeEnds[k]));
+    edges.before = edge_count_;
+    edge_count_ += element.count;
+    if (element.properties.size() > 2)
+      note(element.where, "of element 'edge' only 'vertex1' and 'vertex2' are read");
+    return edges;
   }
 
   /// What numbers of faces become. After the vertices, whose names count first.
@@ -259,6 +293,8 @@ class PlyLoad {
     check_limit(path_, count, "vertices", options_.max_elements);
     check_limit(path_, triangles, "triangles", options_.max_elements);
     check_limit(path_, uvs, "uvs", options_.max_elements);
+    check_limit(path_, edge_count_, "edges", options_.max_elements);
+    parsed_.strokes.resize_uninitialized(2 * edge_count_);
     TriangleMesh& mesh = parsed_.mesh;
     mesh.positions.resize_uninitialized(count);
     if (vertices_.has_normals) mesh.normals.resize_uninitialized(count);
@@ -271,14 +307,8 @@ class PlyLoad {
     allocate_extras();
   }
 
-  /// Points without triangles show none.
   void allocate_extras() {
     TriangleMesh& mesh = parsed_.mesh;
-    const bool shown = mesh.triangle_count() > 0;
-    if (!shown) {
-      for (PlyPart* part : parts_) part->extras.clear();
-      return;
-    }
     drop_costly_extras();
     mesh.attributes = std::move(attributes_);
     for (const PlyPart* part : parts_)
@@ -327,8 +357,10 @@ class PlyLoad {
   /// The images that the header names are shown where there are texture coordinates.
   void choose_textures() {
     if (header_.textures.empty()) return;
-    if (!vertices_.has_uvs && !corner_uvs_) {
-      note(header_.textures.front().data(), "images are not shown: there are no texture coordinates");
+    const bool has_triangles = parsed_.mesh.triangle_count() > 0;
+    if (!has_triangles || (!vertices_.has_uvs && !corner_uvs_)) {
+      note(header_.textures.front().data(), std::string("images are not shown: there are no ") +
+                                                (has_triangles ? "texture coordinates" : "triangles"));
       drop_slots();
       return;
     }
@@ -409,6 +441,15 @@ class PlyLoad {
     note_oddities();
   }
 
+  void read_edges() {
+    for (PlyEdges& edges : edges_)
+      for_each_chunk(edges, [&](PlyChunk& chunk) {
+        PlyEdgeWriter writer(edges, chunk, parsed_.mesh.positions.size(), parsed_.strokes);
+        body_->read_edges(edges, chunk, writer);
+      });
+    stop_at_first_failure();
+  }
+
   void finish() {
     TriangleMesh& mesh = parsed_.mesh;
     parsed_.has_faces = mesh.triangle_count() > 0;
@@ -427,6 +468,8 @@ class PlyLoad {
   std::vector<PlyPart*> parts_;
   PlyVertices vertices_;
   std::vector<PlyFaces> faces_;
+  std::vector<PlyEdges> edges_;
+  std::uint64_t edge_count_ = 0;
   std::vector<PlyPart> others_;
   std::unique_ptr<PlyBody> body_;
   bool corner_uvs_ = false;  ///< texture coordinates are those of faces

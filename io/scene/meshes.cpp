@@ -11,6 +11,7 @@
 #include "io/cache/scene_cache.h"
 #include "io/image/library.h"
 #include "io/mesh/reading.h"
+#include "io/mesh/strokes.h"
 #include "io/text/files.h"
 #include "render/material.h"
 
@@ -137,11 +138,35 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, const MeshO
   return entries_.emplace(key, add(std::move(file), scene)).first->second;
 }
 
+const MeshLibrary::Entry& MeshLibrary::entry_of(const TriangleMesh& mesh) const {
+  const auto is_it = [&](const auto& entry) { return entry.second.mesh.get() == &mesh; };
+  return std::ranges::find_if(entries_, is_it)->second;
+}
+
+std::vector<MeshShape> MeshLibrary::Entry::stroke_shapes(double width, const Location& where,
+                                                         std::vector<Warning>& warnings) const {
+  std::vector<MeshShape> shapes = strokes;
+  if (!(width > 0) && !shapes.empty()) {
+    StrokeCount count;
+    Box box = corner_box(*mesh);
+    for (const MeshShape& shape : shapes) count.add(*shape.mesh), box.grow(corner_box(*shape.mesh));
+    width = usual_stroke_width(box, count.all());
+    warnings.push_back({where, count.width_message(width)});
+  }
+  for (MeshShape& shape : shapes) shape.stroke_width = width;
+  return shapes;
+}
+
 MeshLibrary::Entry MeshLibrary::add(MeshFile file, Scene& scene) {
   check_textures(file);
   Entry entry;
   entry.slot_materials = append_materials(file, scene);
   entry.mesh = std::make_shared<const TriangleMesh>(std::move(file.mesh));
+  for (StrokeSlot& part : split_by_slot(std::move(file.strokes))) {
+    MeshShape& shape = entry.strokes.emplace_back();
+    shape.mesh = std::make_shared<const TriangleMesh>(std::move(part.strokes));
+    if (part.slot < entry.slot_materials.size()) shape.slot_materials = {entry.slot_materials[part.slot]};
+  }
   std::move(file.warnings.begin(), file.warnings.end(), std::back_inserter(scene.warnings));
   return entry;
 }

@@ -33,12 +33,20 @@ class MeshLibrary {
   struct Entry {
     std::shared_ptr<const TriangleMesh> mesh;
     std::vector<std::uint32_t>
-        slot_materials;  ///< index into Scene::materials per slot; empty if the file names none
+        slot_materials;                ///< index into Scene::materials per slot; empty if the file names none
+    std::vector<MeshShape> strokes{};  ///< MeshFile::strokes, those of each slot for itself, without a width
+
+    /// The strokes of this width; of 0: as wide as usual, with a warning that belongs to `where`.
+    std::vector<MeshShape> stroke_shapes(double width, const Location& where,
+                                         std::vector<Warning>& warnings) const;
   };
 
   /// The mesh of a file that exists. The first time it is read and its materials, textures and warnings are
   /// appended to `scene`. Throws Error as load_mesh does.
   const Entry& load(const std::string& path, const MeshOptions& options, Scene& scene);
+
+  /// What was loaded with this mesh.
+  const Entry& entry_of(const TriangleMesh& mesh) const;
 
   /// What `file` brings to `scene`, where it is not kept in a library.
   static Entry add(MeshFile file, Scene& scene);

@@ -145,14 +145,41 @@ class ObjectReader {
     std::optional<Shape> shape;
     if (!attempt(*value, [&, k = key, v = value] { shape = read_any_shape(*k, *v, inner); })) return;
     if (!shape || inner.is_dropped) return;
+    const std::vector<MeshShape> strokes = take_strokes(*value, *shape);
     object.shape = std::move(*shape);
     object.name = inner.name;
     object.material = inner.material;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
+    for (const MeshShape& each : strokes) {
+      Object own = object;
+      own.shape = each;
+      place_far_mesh(own);
+      out_.push_back(std::move(own));
+    }
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (mesh != nullptr && mesh->mesh->triangle_count() == 0) return;
     place_far_mesh(object);
     require_inside(object);
     out_.push_back(std::move(object));
+  }
+
+  /// The points and lines of the file of a mesh, which are no operands of combinations.
+  std::vector<MeshShape> take_strokes(const YamlNode& node, Shape& shape) const {
+    auto* const mesh = std::get_if<MeshShape>(&shape);
+    if (mesh == nullptr) return {};
+    const double width = std::exchange(mesh->stroke_width, 0);
+    const MeshLibrary::Entry& entry = load_.meshes.entry_of(*mesh->mesh);
+    if (entry.strokes.empty()) return {};
+    if (is_operand_) {
+      load_.warn(node.where(), "points and lines of the mesh are skipped: they have no inside");
+      return {};
+    }
+    std::vector<Warning> warnings;
+    std::vector<MeshShape> strokes =
+        entry.stroke_shapes(width > 0 ? width : load_.gltf.stroke_width, node.where(), warnings);
+    for (const Warning& warning : warnings) load_.warn(warning.where, warning.message);
+    return strokes;
   }
 
   /// Positions of a mesh that lies far from the origin count from a place of their own.

@@ -34,7 +34,11 @@ namespace {
 /// Adds the parts of a file to a scene.
 class Adding {
  public:
-  Adding(const std::string& path, GltfScene& file, Scene& scene) : path_(path), file_(file), scene_(scene) {
+  Adding(const std::string& path, double stroke_width, GltfScene& file, Scene& scene)
+      : path_(path),
+        file_(file),
+        scene_(scene),
+        stroke_width_(stroke_width > 0 ? stroke_width : usual_stroke_width(file, path)) {
     MeshFile common;
     common.materials = std::move(file.materials), common.textures = std::move(file.textures);
     common.media = std::move(file.media);
@@ -70,6 +74,7 @@ class Adding {
   MeshShape shape(std::uint32_t mesh) {
     MeshShape shape;
     shape.mesh = file_.meshes[mesh].mesh;
+    if (file_.meshes[mesh].is_strokes) shape.stroke_width = stroke_width_;
     const bool colored = find_attribute(*shape.mesh, kColorAttribute) != nullptr;
     for (const std::uint32_t slot : file_.meshes[mesh].slots)
       shape.slot_materials.push_back(slot < materials_.size() ? materials_[slot]
@@ -99,6 +104,7 @@ class Adding {
   const std::string& path_;
   GltfScene& file_;
   Scene& scene_;
+  const double stroke_width_;
   std::vector<std::uint32_t> materials_;
   std::uint32_t colors_ = kNoId;
 };
@@ -107,8 +113,8 @@ class Adding {
 
 /// Adds the objects of `file`, which was read from `path`, with their materials and lights to `scene`. Its
 /// camera replaces that of the scene. A mesh that several nodes show becomes a prototype.
-static void add_gltf(const std::string& path, GltfScene file, Scene& scene) {
-  Adding adding(path, file, scene);
+static void add_gltf(const std::string& path, const GltfOptions& options, GltfScene file, Scene& scene) {
+  Adding adding(path, options.stroke_width, file, scene);
   adding.add_objects();
   adding.add_view_and_lights();
 }
@@ -223,7 +229,7 @@ class FileReader {
     if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) return;
     if (is_gltf_file(path)) {
       seen_.push_back(canonical);
-      add_gltf(path, load_gltf_scene(path, load_.gltf), load_.scene);
+      add_gltf(path, load_.gltf, load_gltf_scene(path, load_.gltf), load_.scene);
       load_.prototype_levels.resize(load_.scene.prototypes.size());
       return;
     }
@@ -256,7 +262,7 @@ void expect_readable(const std::string& path) {
 }
 
 /// A scene of its own: path tracing, which its materials are made for.
-Scene scene_from_gltf(const std::string& path, GltfScene file) {
+Scene scene_from_gltf(const std::string& path, const GltfOptions& options, GltfScene file) {
   Scene scene;
   scene.source = path;
   scene.background = kPlainBackground;
@@ -267,7 +273,7 @@ Scene scene_from_gltf(const std::string& path, GltfScene file) {
   if (file.aspect > 0)
     scene.film.width =
         static_cast<std::uint32_t>(std::clamp(std::round(scene.film.height * file.aspect), 1.0, 4096.0));
-  add_gltf(path, std::move(file), scene);
+  add_gltf(path, options, std::move(file), scene);
   return scene;
 }
 
@@ -322,7 +328,7 @@ static Vec3d up_of(const std::string& path, const TriangleMesh& mesh) {
 
 Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   expect_readable(path);
-  if (!is_gltf_file(path) && !(gltf == GltfOptions{}))
+  if (!is_gltf_file(path) && gltf.is_for_gltf())
     throw Error(Location{path}, "a time and variants are for glTF files");
   Scene scene;
   scene.source = path;
@@ -333,32 +339,35 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
     const bool moves =
         std::ranges::any_of(file.placements, [](const auto& p) { return p.motion != nullptr; });
     if (moves || file.camera || !file.lights.empty() || !can_be_one_mesh(file))
-      return scene_from_gltf(path, std::move(file));
+      return scene_from_gltf(path, gltf, std::move(file));
     entry = MeshLibrary::add(one_mesh(path, std::move(file)), scene);
   } else {
     entry = meshes.load(path, {.weld = repeats_vertices(path)}, scene);
   }
-  MeshShape shape;
-  shape.mesh = entry.mesh;
-  shape.slot_materials = entry.slot_materials;
-  // glTF 2.0, 3.7.2.1: without normals triangles are flat.
-  shape.smooth = !is_gltf_file(path) || !entry.mesh->normals.empty();
-  if (shape.mesh->triangle_count() == 0) {
+  const bool has_triangles = entry.mesh->triangle_count() > 0;
+  if (!has_triangles && entry.strokes.empty()) {
     scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
   }
-  if (!has_area(*shape.mesh))
+  if (entry.strokes.empty() && !has_area(*entry.mesh))
     scene.warnings.push_back(
         Warning{Location{path, 0, 0}, "no triangle of the mesh has an area: there is nothing to be seen"});
-  scene.camera.up = up_of(path, *shape.mesh);
+  scene.camera.up = up_of(path, *entry.mesh);
   scene.background = kPlainBackground;
-  Object object;
-  scene.origin = shape.mesh->origin;
-  object.shape = std::move(shape);
-  object.name = std::filesystem::path(without_packing(path)).stem().string();
-  object.where = {path, 0, 0};
-  show_colors(scene, object);
-  scene.objects.push_back(std::move(object));
+  scene.origin = entry.mesh->origin;
+  const auto add = [&](MeshShape shape) {
+    Object object;
+    object.shape = std::move(shape);
+    object.name = std::filesystem::path(without_packing(path)).stem().string();
+    object.where = {path, 0, 0};
+    show_colors(scene, object);
+    scene.objects.push_back(std::move(object));
+  };
+  // glTF 2.0, 3.7.2.1: without normals triangles are flat.
+  const bool smooth = !is_gltf_file(path) || !entry.mesh->normals.empty();
+  if (has_triangles) add({entry.mesh, entry.slot_materials, smooth});
+  for (MeshShape& strokes : entry.stroke_shapes(gltf.stroke_width, Location{path}, scene.warnings))
+    add(std::move(strokes));
   return scene;
 }
 

@@ -24,7 +24,8 @@ const MeshLibrary::Entry& load_file(SceneLoad& load, const std::string& path, co
   }
 }
 
-/// Loads the file of a mesh. Returns whether it has triangles.
+/// Loads the file of a mesh. Returns whether there is anything in it; its strokes are added by who reads the
+/// object.
 bool finish(const ShapeNode& at, MeshShape& shape) {
   const YamlNode& file = at.fields.require("file");
   const std::string path = at.load.values.existing_file(file);
@@ -33,8 +34,11 @@ bool finish(const ShapeNode& at, MeshShape& shape) {
   const MeshLibrary::Entry& entry = load_file(at.load, path, {.weld = shape.weld});
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
-  if (shape.mesh->triangle_count() == 0) at.skip("the mesh has no triangles");
-  return shape.mesh->triangle_count() > 0;
+  const bool is_empty = shape.mesh->triangle_count() == 0 && entry.strokes.empty();
+  if (is_empty) at.skip("the mesh has no triangles");
+  at.load.warn_if_unused(at.fields, "stroke_width", entry.strokes.empty(),
+                         "the file has no points and lines");
+  return !is_empty;
 }
 
 /// Returns whether a polygon can be shown.

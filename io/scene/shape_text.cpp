@@ -45,6 +45,9 @@ bool is_given(const T&, std::string_view) {
 }
 bool is_given(const QuadricShape& s, std::string_view key) { return key != "clip" || s.clipped; }
 bool is_given(const BlobShape& s, std::string_view key) { return key != "bounds" || s.bounded; }
+bool is_given(const MeshShape& s, std::string_view key) {
+  return key != "stroke_width" || s.stroke_width > 0;
+}
 bool is_given(const HeightFieldShape& s, std::string_view key) { return key != "base" || !s.open; }
 
 /// Gathers `key: value` of each parameter of a shape. Those without a member are left to the caller.

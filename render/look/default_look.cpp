@@ -1,6 +1,7 @@
 #include "render/look/default_look.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -274,6 +275,38 @@ void smooth(MeshShape& shape) {
   shape.mesh = std::move(mesh);
 }
 
+/// The corners of what there is to be seen, each with an index: those of meshes, the ends of points and
+/// lines, and how far these reach along the axes.
+TriangleMesh corners_of(const Scene& scene) {
+  TriangleMesh all;
+  const auto add = [&](const Vec3f& p) {
+    all.indices.push_back(static_cast<std::uint32_t>(all.positions.size()));
+    all.positions.push_back(p);
+  };
+  for (const Object& object : scene.objects) {
+    const auto& shape = std::get<MeshShape>(object.shape);
+    std::array<std::array<Vec3f, 2>, 3> ends{};
+    bool is_first = true;
+    each_corner(*shape.mesh, [&](const Vec3f& p) {
+      add(p);
+      for (int axis = 0; axis < 3; ++axis) {
+        auto& [low, high] = ends[static_cast<std::size_t>(axis)];
+        if (is_first || p[axis] < low[axis]) low = p;
+        if (is_first || p[axis] > high[axis]) high = p;
+      }
+      is_first = false;
+    });
+    const auto reach = static_cast<float>(shape.stroke_width / 2);
+    if (!(reach > 0)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto [low, high] = ends[static_cast<std::size_t>(axis)];
+      low[axis] -= reach, high[axis] += reach;
+      add(low), add(high);
+    }
+  }
+  return all;
+}
+
 /// The bounces that the materials of a scene need: for diffuse light `usual`; for glass as many as there may
 /// be, since each face of it takes one. Paths of little light end by themselves.
 std::uint32_t bounces_for(const Scene& scene, std::uint32_t usual) {
@@ -352,8 +385,12 @@ void light_as_look(Scene& scene) {
 }
 
 bool is_mesh_alone(const Scene& scene) {
-  if (scene.camera_given || scene.lights_given || scene.objects.size() > 1) return false;
-  return scene.objects.empty() || std::holds_alternative<MeshShape>(scene.objects[0].shape);
+  if (scene.camera_given || scene.lights_given) return false;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto* const shape = std::get_if<MeshShape>(&scene.objects[i].shape);
+    if (shape == nullptr || (i > 0 && shape->stroke_width == 0)) return false;
+  }
+  return true;
 }
 
 void apply_look(Scene& scene, Look look) { apply_look(scene, look, Viewpoint::automatic); }
@@ -361,12 +398,16 @@ void apply_look(Scene& scene, Look look) { apply_look(scene, look, Viewpoint::au
 void apply_look(Scene& scene, Look look, Viewpoint viewpoint) {
   if (scene.objects.empty()) return;
   auto& shape = std::get<MeshShape>(scene.objects[0].shape);
-  smooth(shape);
-  const TriangleMesh& mesh = *shape.mesh;
-  const Vec3d up = normalize(scene.camera.up);
+  const bool has_strokes = std::get<MeshShape>(scene.objects.back().shape).stroke_width > 0;
   std::optional<InteriorView> inside;
-  if (viewpoint == Viewpoint::automatic) inside = interior_view(mesh, up, scene.film);
-  if (viewpoint == Viewpoint::inside) inside = inside_view(mesh, up, scene.film);
+  const Vec3d up = normalize(scene.camera.up);
+  if (shape.stroke_width == 0) {
+    smooth(shape);
+    if (viewpoint == Viewpoint::automatic) inside = interior_view(*shape.mesh, up, scene.film);
+    if (viewpoint == Viewpoint::inside) inside = inside_view(*shape.mesh, up, scene.film);
+  }
+  const TriangleMesh corners = has_strokes ? corners_of(scene) : TriangleMesh{};
+  const TriangleMesh& mesh = has_strokes ? corners : *shape.mesh;
   const Stance stance = stance_of(mesh, up);
   scene.camera =
       inside ? inside->camera : fit_mesh(mesh, -towards_camera(stance, up), up, kFov, kMargin, scene.film);
@@ -384,10 +425,12 @@ void apply_look(Scene& scene, Look look, Viewpoint viewpoint) {
     light_room(scene, *inside, up);
   else
     light_by(scene, studio_picture(studio_frame(scene.camera, up), kGroundAlbedo, kHorizon));
-  if (look == Look::clay)
-    cover(scene, scene.objects[0], matt("clay", {0.58f, 0.42f, 0.33f}));
-  else if (shape.slot_materials.empty() && scene.objects[0].material == kNoId)
-    cover(scene, scene.objects[0], satin());
+  for (Object& object : scene.objects) {
+    if (look == Look::clay)
+      cover(scene, object, matt("clay", {0.58f, 0.42f, 0.33f}));
+    else if (std::get<MeshShape>(object.shape).slot_materials.empty() && object.material == kNoId)
+      cover(scene, object, satin());
+  }
   if (!inside) add_ground(scene, stance, up);
 }
 

@@ -57,16 +57,16 @@ std::uint32_t add_color_material(Scene& scene);
 /// scene yet.
 void show_colors(Scene& scene, Object& object);
 
-/// Whether the scene holds at most one object, a mesh, and neither a camera nor lights.
+/// Whether the scene holds at most one mesh, with its points and lines, and neither a camera nor lights.
 bool is_mesh_alone(const Scene& scene);
 
 /// Lights a scene that has a camera, but no lights, and where +y points up, by the light of the studio and a
 /// weak emitter at the camera, which leaves nothing black in a room.
 void light_as_look(Scene& scene);
 
-/// Completes a scene that holds nothing but one mesh: camera, ground, light, integrator, and a material for
-/// what has none. Up is that of its camera. Film, seed and what else it says stay. A scene without objects
-/// stays as it is.
+/// Completes a scene that holds nothing but one mesh, its points and lines: camera, ground, light,
+/// integrator, and a material for what has none. Up is that of its camera. Film, seed and what else it says
+/// stay. A scene without objects stays as it is.
 void apply_look(Scene& scene, Look look, Viewpoint viewpoint);
 /// From where it is best seen.
 void apply_look(Scene& scene, Look look);

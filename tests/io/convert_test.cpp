@@ -172,7 +172,8 @@ TEST_F(Convert, RefusesInOneLine) {
             "a.glb: --ascii is for .ply and .stl, which are bytes without it");
   EXPECT_EQ(error("in.obj", "none/a.ply"), "none/a.ply: cannot write: no directory 'none'");
   EXPECT_EQ(error("in.obj", "in.obj"), "in.obj: is the input, too");
-  EXPECT_EQ(error("empty.obj", "old.ply"), "empty.obj: no triangles to convert");
+  EXPECT_EQ(error("empty.obj", "old.ply"),
+            "empty.obj: no triangles to convert; points and lines are not written");
   EXPECT_EQ(error("gone.obj", "old.ply"), "gone.obj: cannot read: No such file or directory");
   EXPECT_EQ(file_content(files.dir.file("in.obj")), mesh);
   EXPECT_EQ(file_content(files.dir.file("old.ply")), "old");

@@ -138,11 +138,6 @@ TEST(Obj, NamesGroupsAndSmoothingChangeNothing) {
   EXPECT_TRUE(file.warnings.empty());
 }
 
-TEST(Obj, LinesAndPointsAreSkippedWithOneWarning) {
-  EXPECT_EQ(ObjFiles().warnings(kSquare + "l 1 2\np 3\nl 2 3\nf 1 2 3\np 1\n"),
-            (std::vector<std::string>{"mesh.obj:5:1: warning: lines and points are skipped"}));
-}
-
 // Other programs read these files; a warning says what is left out.
 TEST(Obj, FacesThatNameWhatIsNotThereAreReadWithAWarning) {
   const ObjFiles files;
@@ -204,9 +199,10 @@ TEST(Obj, ReadsTheBraceForm) {
 TEST(Obj, FilesWithoutFacesAreEmptyMeshes) {
   const ObjFiles files;
   const std::vector<std::string> expected{"mesh.obj: warning: no faces"};
-  for (const std::string text : {"", "\n", "# nothing\n", "v 1 2 3\n"}) {
+  for (const std::string text : {"", "\n", "# nothing\n"}) {
     const ObjFile file = files.load(text);
     EXPECT_EQ(file.mesh.triangle_count(), 0u);
+    EXPECT_EQ(file.strokes.triangle_count(), 0u);
     EXPECT_EQ(files.as_text(file.warnings), expected) << text;
   }
 }

@@ -13,6 +13,7 @@
 #include "io/gltf/gltf.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/mesh_output.h"
+#include "io/mesh/strokes.h"
 #include "io/mesh/vertices.h"
 #include "io/obj/write_obj.h"
 #include "io/ply/header.h"
@@ -212,8 +213,7 @@ void note_scene(const GltfScene& scene, MeshLosses& losses) {
 
 MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses& losses) {
   if (!is_gltf_file(path)) {
-    if (!(options.gltf == GltfOptions{}))
-      throw Error(Location{path}, "a time and variants are for glTF files");
+    if (options.gltf.is_for_gltf()) throw Error(Location{path}, "a time and variants are for glTF files");
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
     if (format != nullptr && format->note_unread != nullptr)
@@ -256,7 +256,13 @@ Conversion convert_mesh(const std::string& input, const std::string& output, con
   MeshFile file = load(input, options, result.losses);
   result.triangles = file.mesh.triangle_count(), result.vertices = file.mesh.positions.size();
   result.warnings = std::move(file.warnings);
-  if (result.triangles == 0) throw Error(Location{input}, "no triangles to convert");
+  StrokeCount strokes;
+  strokes.add(file.strokes);
+  if (result.triangles == 0)
+    throw Error(Location{input}, strokes.all() == 0
+                                     ? "no triangles to convert"
+                                     : "no triangles to convert; points and lines are not written");
+  if (strokes.all() > 0) result.losses.push_back("lost: " + strokes.text());
   if (!format.has_materials) {
     if (!file.materials.empty())
       result.losses.push_back("lost: " + count_of(file.materials.size(), "material"));
