@@ -70,7 +70,7 @@ class WorldBuilder {
     std::uint64_t instances = 0;
     for (std::size_t k = 0; k < objects.size(); ++k) {
       const Object& object = objects[k];
-      if (object.motion != nullptr && &objects == &scene_.objects) {
+      if (&objects == &scene_.objects && (object.motion != nullptr || is_bent(object))) {
         add_moving(object);
         continue;
       }
@@ -109,6 +109,7 @@ class WorldBuilder {
   }
 
   void add_moving(const Object& object) {
+    if (is_bent(object)) return add_bent(object);
     Object unmoved = object;
     unmoved.transform = {};
     Geometry geometry;
@@ -118,6 +119,29 @@ class WorldBuilder {
       world_.moving.push_back({instance->child, object.motion, geometry.user, id});
     else
       world_.moving.push_back({build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId});
+  }
+
+  static bool is_bent(const Object& object) {
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    return mesh != nullptr && mesh->mesh != nullptr && mesh->bending != nullptr;
+  }
+
+  /// Its structure is that of each moment.
+  void add_bent(const Object& object) {
+    const std::uint32_t id = next_object();
+    const auto& mesh = std::get<MeshShape>(object.shape);
+    world_.objects.push_back({object.material, mesh.slot_materials, solid(object, id), object.name});
+    MovingObject moving;
+    moving.motion = object.motion;
+    if (moving.motion == nullptr && !object.transform.is_identity()) {
+      Motion still;
+      still.factors.push_back({{0, object.transform}});
+      moving.motion = std::make_shared<const Motion>(std::move(still));
+    }
+    moving.bent = std::make_shared<const MeshShape>(mesh), moving.bent_object = id;
+    world_.triangles += mesh.mesh->triangle_count(), world_.bent_triangles += mesh.mesh->triangle_count();
+    keep(mesh.mesh);
+    world_.moving.push_back(std::move(moving));
   }
 
   /// Number of instances in a row from object `first` on.
@@ -313,12 +337,47 @@ World build_world(const Scene& scene, const BuildOptions& options) {
   return WorldBuilder(scene, options).build();
 }
 
+std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time) {
+  if (shape.bending == nullptr) return shape.mesh;
+  const std::vector<MeshPose>& poses = shape.bending->poses;
+  const auto next = std::ranges::find_if(poses, [&](const MeshPose& p) { return p.time >= time; });
+  const MeshPose& to = next == poses.end() ? poses.back() : *next;
+  const MeshPose& from = next == poses.begin() || next == poses.end() ? to : *(next - 1);
+  const double span = to.time - from.time, part = span > 0 ? (time - from.time) / span : 0;
+  const auto a = static_cast<float>(1 - part), b = static_cast<float>(part);
+  auto mesh = std::make_shared<TriangleMesh>(*shape.mesh);
+  for (std::size_t i = 0; i < mesh->positions.size(); ++i)
+    mesh->positions[i] = from.positions[i] * a + to.positions[i] * b;
+  for (std::size_t i = 0; i < mesh->normals.size(); ++i)
+    mesh->normals[i] = from.normals[i] * a + to.normals[i] * b;
+  for (std::size_t i = 0; i < mesh->tangents.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      mesh->tangents[i][k] = from.tangents[i][k] * a + to.tangents[i][k] * b;
+  return mesh;
+}
+
+/// Gives a bent object the structure of a time.
+static void bend(World& world, MovingObject& object, double time, const BuildOptions& options) {
+  const MeshShape& shape = *object.bent;
+  object.mesh = mesh_at(shape, time);
+  std::vector<Geometry> geometries;
+  if (shape.stroke_width > 0)
+    world.objects[object.bent_object].strokes = std::make_shared<const StrokeParts>(
+        add_strokes(object.mesh, shape.stroke_width / 2, object.bent_object, geometries));
+  else
+    geometries.push_back({MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.bent_object});
+  object.shape = build_accel(std::move(geometries), options);
+}
+
 void pose(World& world, double time, const BuildOptions& options) {
   std::vector<Geometry> geometries;
   if (world.still != nullptr && stats(*world.still).items > 0)
     geometries.push_back({InstanceGeometry{world.still}, {}, kNoId});
-  for (const MovingObject& object : world.moving)
-    geometries.push_back({InstanceGeometry{object.shape}, object.motion->at(time), object.user});
+  for (MovingObject& object : world.moving) {
+    if (object.bent != nullptr) bend(world, object, time, options);
+    geometries.push_back({InstanceGeometry{object.shape},
+                          object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user});
+  }
   world.accel = build_accel(std::move(geometries), options);
   world.bounds = bounds(*world.accel);
 }
@@ -328,6 +387,8 @@ void pose(World& world, double time, const BuildOptions& options) {
 static std::uint32_t object_of_geometry(const World& world, const Accel& accel, std::uint32_t geometry) {
   const auto found = world.structure_objects->find(&accel);
   if (found != world.structure_objects->end()) return found->second[geometry];
+  for (const MovingObject& object : world.moving)
+    if (object.shape.get() == &accel) return object.bent_object;
   // Else it is the structure of `pose`.
   const std::uint32_t first = world.still != nullptr && stats(*world.still).items > 0 ? 1 : 0;
   return geometry < first ? kNoId : world.moving[geometry - first].instance;

@@ -27,6 +27,9 @@ bool is_solid(const Shape& shape, const std::vector<Prototype>& prototypes);
 /// At least this many instances in a row become one geometry, which takes less memory.
 inline constexpr std::size_t kLeastInstanceList = 64;
 
+/// A bent mesh as it is at a time; the mesh itself without a bending.
+std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time);
+
 /// What an object of the scene contributes to shading its hits; indexed by SurfaceInteraction::user.
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
@@ -45,9 +48,13 @@ using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint3
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
-  MotionPointer motion;
+  MotionPointer motion;            ///< null: it stands still, but is bent
   std::uint32_t user = kNoId;      ///< of the instance, as in Geometry
   std::uint32_t instance = kNoId;  ///< the object, if it is an instance
+  // Of a mesh that is bent, of which `shape` and `mesh` are those at a moment.
+  std::shared_ptr<const MeshShape> bent{};
+  std::shared_ptr<const TriangleMesh> mesh{};
+  std::uint32_t bent_object = kNoId;
 };
 
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's
@@ -68,6 +75,7 @@ struct World {
   bool has_clear = false;             ///< some material is transparent
 
   std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted
+  std::uint64_t bent_triangles = 0;             ///< of these: what each moment has a tree of its own for
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0;
   double sah_cost = 0;  ///< of the top level
 };

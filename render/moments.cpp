@@ -82,6 +82,10 @@ Moments::Moments(const Scene& scene, World& world, const BuildOptions& build) : 
   // Each moment needs photons of its own.
   if (things_move_ && wants_photons(scene.integrator))
     count = std::min(count, std::max(scene.integrator.caustics.passes, 1u));
+  if (world.bent_triangles > 0)
+    count = std::min(
+        count, std::max(kLeastBentMoments, static_cast<std::uint32_t>(std::min<std::uint64_t>(
+                                               kMostBentTriangles / world.bent_triangles, kMostMoments))));
   const std::uint64_t key = pixel_key(scene.integrator.seed, ~std::uint64_t{0} - 1);
   for (std::uint32_t m = 0; m < count; ++m) {
     const double begin = first_sample_of_moment(m, count, samples),

@@ -3,8 +3,9 @@
 ///
 /// Between moments things move, at each moment they stand still: it has an acceleration structure, lights and
 /// a camera of its own, and everything that traces and shades rays stays as it is. Structures of meshes,
-/// prototypes and all that does not move are built once; only the tree over them is built for each moment.
-/// Samples of a moment are consecutive, so they are spread evenly over the pixel in themselves and together.
+/// prototypes and all that does not move are built once; only the tree over them is built for each moment,
+/// and those of meshes that are bent. Samples of a moment are consecutive, so they are spread evenly over the
+/// pixel in themselves and together.
 
 #include <cstdint>
 #include <deque>
@@ -28,6 +29,11 @@ Light moved_light(const Affine& motion, const Light& light);
 
 /// More moments look the same in most pictures, and each takes memory.
 inline constexpr std::uint32_t kMostMoments = 64;
+
+/// Most triangles of bent meshes at all moments together: each has trees of its own. For more there are fewer
+/// moments, down to kLeastBentMoments.
+inline constexpr std::uint64_t kMostBentTriangles = 1u << 23;
+inline constexpr std::uint32_t kLeastBentMoments = 8;
 
 /// The first of the `samples` samples of a pixel that belongs to moment `moment`, [0, moments]. `samples` is
 /// at least `moments`.

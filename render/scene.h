@@ -1,6 +1,7 @@
 #pragma once
 /// \file A scene as data: what a scene file says, or what a program puts together, before anything is built.
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -307,6 +308,19 @@ inline constexpr const char* kDefaultLightGroup = "default";
 /// Most light groups of a scene, the default one included.
 inline constexpr std::size_t kMostLightGroups = 64;
 
+/// Where the vertices of a mesh are at a time; columns that the mesh lacks are empty.
+struct MeshPose {
+  double time = 0;
+  Column<Vec3f> positions, normals;
+  Column<std::array<float, 4>> tangents;
+};
+
+/// How a mesh is bent: at least one pose, of ascending times. Between two all numbers change linearly, before
+/// the first and after the last nothing does.
+struct MeshBending {
+  std::vector<MeshPose> poses;
+};
+
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
@@ -319,6 +333,8 @@ struct MeshShape {
   /// If not 0, the triangles are points and lines of this width, balls and round cylinders: without area,
   /// their corners a, a, a of a point and a, b, b of a line. All are in slot 0, and none has an inside.
   double stroke_width = 0;
+  /// If not null, how the mesh is bent; `mesh` is as at time 0. Only of objects of the scene itself.
+  std::shared_ptr<const MeshBending> bending = nullptr;
 
   static constexpr ShapeInfo kShapeInfo{"mesh", "the triangles of a file"};
   void describe(auto& p) {

@@ -131,16 +131,20 @@ class SceneReader {
   }
 
   void show_mesh(const GltfNode& node, std::uint32_t number, bool is_skinned) {
-    GltfBending bending;
-    bending.weights = pose().weights[number];
-    if (is_skinned) bending.joints = gltf_joints(accessors_, file_.model().skins[node.skin], pose());
-    const bool is_bent =
-        is_skinned || std::ranges::any_of(bending.weights, [](double weight) { return weight != 0; });
+    std::vector<GltfBending> bendings;
+    for (const GltfPose& at : poses_) {
+      GltfBending& bending = bendings.emplace_back();
+      bending.weights = at.weights[number];
+      if (is_skinned) bending.joints = gltf_joints(accessors_, file_.model().skins[node.skin], at);
+    }
+    const bool is_bent = is_skinned || std::ranges::any_of(bendings, [](const GltfBending& bending) {
+                           return std::ranges::any_of(bending.weights, [](double w) { return w != 0; });
+                         });
     const std::vector<Affine> instances =
         is_skinned ? std::vector<Affine>{Affine{}} : instances_of(node, number);
     for (const GltfChoice& choice : choices_of(node.mesh)) {
       GltfSharedMesh own;
-      if (is_bent) own = build(node.mesh, choice, &bending);
+      if (is_bent) own = bent(node.mesh, choice, bendings);
       const GltfSharedMesh& mesh = is_bent ? own : unbent(node.mesh, choice);
       if (mesh.mesh == nullptr) continue;
       const std::string& name = node.name.empty() ? mesh.name : node.name;
@@ -211,17 +215,50 @@ class SceneReader {
     return mesh;
   }
 
+  /// A mesh as it is bent at all poses, the first of which it shows.
+  GltfSharedMesh bent(std::uint32_t number, const GltfChoice& choice,
+                      const std::vector<GltfBending>& bendings) {
+    GltfSharedMesh mesh = build(number, choice, bendings.data());
+    if (mesh.mesh == nullptr) return mesh;
+    MeshBending all;
+    bool moves = false;
+    for (std::size_t i = 0; i < bendings.size(); ++i) {
+      MeshPose& at = all.poses.emplace_back();
+      at.time = times_[i];
+      if (i > 0 && bendings[i] == bendings[i - 1]) {
+        at.positions = all.poses[i - 1].positions, at.normals = all.poses[i - 1].normals;
+        at.tangents = all.poses[i - 1].tangents;
+        continue;
+      }
+      moves = moves || i > 0;
+      std::vector<std::string> told;
+      TriangleMesh now = i == 0 ? *mesh.mesh : builder_.build(number, choice, &bendings[i], told).mesh;
+      at.positions = std::move(now.positions), at.normals = std::move(now.normals);
+      at.tangents = std::move(now.tangents);
+    }
+    if (moves) mesh.bending = std::make_shared<const MeshBending>(std::move(all));
+    return mesh;
+  }
+
   /// The same strokes in another place.
   GltfSharedMesh moved(const GltfSharedMesh& strokes, const Affine& map) {
     GltfSharedMesh out = strokes;
     if (map.is_identity()) return out;
+    const auto move = [&](Column<Vec3f>& positions) {
+      accessors_.spend(positions.bytes());
+      for (Vec3f& p : positions) {
+        p = Vec3f(map.point(Vec3d(p)));
+        for (const float x : {p.x, p.y, p.z})
+          if (!is_coordinate(x)) file_.fail("mesh '" + strokes.name + "': placed: " + bad_coordinate(x));
+      }
+    };
     accessors_.spend(strokes.mesh->bytes());
     out.mesh = std::make_shared<TriangleMesh>(*strokes.mesh);
-    for (Vec3f& p : out.mesh->positions) {
-      p = Vec3f(map.point(Vec3d(p)));
-      for (const float x : {p.x, p.y, p.z})
-        if (!is_coordinate(x)) file_.fail("mesh '" + strokes.name + "': placed: " + bad_coordinate(x));
-    }
+    move(out.mesh->positions);
+    if (strokes.bending == nullptr) return out;
+    MeshBending bending = *strokes.bending;
+    for (MeshPose& at : bending.poses) move(at.positions);
+    out.bending = std::make_shared<const MeshBending>(std::move(bending));
     return out;
   }
 

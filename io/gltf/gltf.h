@@ -23,6 +23,8 @@ struct GltfSharedMesh {
   /// They are points and lines (MeshFile::strokes), in world space, which scales their places alone: a node
   /// that is stretched does not make balls of them ellipsoids.
   bool is_strokes = false;
+  std::shared_ptr<const MeshBending>
+      bending{};  ///< as GltfOptions::shutter says; null: it is not bent by then
 };
 
 /// A node that shows a mesh.

@@ -10,7 +10,7 @@ namespace oktett {
 struct GltfOptions {
   /// Seconds from the start of the animations; nothing: all is where the file places it without them.
   std::optional<double> time;
-  /// Seconds for which things move from then on. Meshes that are bent do not.
+  /// Seconds for which things move from then on.
   double shutter = 0;
   std::string variant;      ///< of KHR_materials_variants; empty: none
   double stroke_width = 0;  ///< of points and lines, also of other meshes; 0: by their surroundings

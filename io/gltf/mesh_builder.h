@@ -29,6 +29,8 @@ struct GltfChoice {
 struct GltfBending {
   std::vector<double> weights;  ///< of morph targets; may be shorter than their lists
   std::vector<Affine> joints;   ///< from the mesh as it is stored to where it is shown; empty: not skinned
+
+  bool operator==(const GltfBending&) const = default;
 };
 
 /// Makes meshes of a file, as long as they take no more memory than the file justifies.

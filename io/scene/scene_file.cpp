@@ -12,6 +12,7 @@
 #include "core/mesh_geometry.h"
 #include "io/gltf/gltf.h"
 #include "io/mesh/load/load_mesh.h"
+#include "io/mesh/reading.h"
 #include "io/ply/ply.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
@@ -53,6 +54,9 @@ class Adding {
     for (const GltfPlacement& placement : file_.placements) ++uses[placement.mesh];
     for (std::uint32_t i = 0; i < uses.size(); ++i) {
       if (uses[i] < 2) continue;
+      if (file_.meshes[i].bending != nullptr)
+        scene_.warnings.push_back({Location{path_}, "mesh " + quote_name(file_.meshes[i].name) +
+                                                        ": instances are not blurred as they are bent"});
       prototypes[i] = static_cast<std::uint32_t>(scene_.prototypes.size());
       scene_.prototypes.push_back({file_.meshes[i].name, {object(file_.meshes[i].name, shape(i))}});
     }
@@ -75,6 +79,7 @@ class Adding {
     MeshShape shape;
     shape.mesh = file_.meshes[mesh].mesh;
     if (file_.meshes[mesh].is_strokes) shape.stroke_width = stroke_width_;
+    shape.bending = file_.meshes[mesh].bending;
     const bool colored = find_attribute(*shape.mesh, kColorAttribute) != nullptr;
     for (const std::uint32_t slot : file_.meshes[mesh].slots)
       shape.slot_materials.push_back(slot < materials_.size() ? materials_[slot]
@@ -336,8 +341,9 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   MeshLibrary::Entry entry;
   if (is_gltf_file(path)) {
     GltfScene file = load_gltf_scene(path, gltf);
-    const bool moves =
-        std::ranges::any_of(file.placements, [](const auto& p) { return p.motion != nullptr; });
+    const bool moves = std::ranges::any_of(file.placements, [&](const GltfPlacement& p) {
+      return p.motion != nullptr || file.meshes[p.mesh].bending != nullptr;
+    });
     if (moves || file.camera || !file.lights.empty() || !can_be_one_mesh(file))
       return scene_from_gltf(path, gltf, std::move(file));
     entry = MeshLibrary::add(one_mesh(path, std::move(file)), scene);

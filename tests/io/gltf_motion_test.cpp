@@ -4,7 +4,9 @@
 #include <numbers>
 
 #include "io/scene/scene_file.h"
+#include "render/geometry.h"
 #include "tests/io/gltf_test_support.h"
+#include "tests/render/test_scenes.h"
 
 namespace oktett::test::gltf_motion_test {
 namespace {
@@ -180,6 +182,90 @@ TEST(GltfMotion, SkinsMoveVerticesWithTheirJoints) {
     EXPECT_LT(length(Vec3d(turned->normals[2]) - Vec3d{-1, 0, 0}), 1e-6);
     EXPECT_LT(length(Vec3d(turned->normals[0]) - Vec3d{0, 0, 1}), 1e-6);
   }
+}
+
+/// The mean of the alpha of pictures, which is the part of the time for which a pixel shows something.
+std::vector<double> mean_alpha(const std::vector<Scene>& scenes) {
+  std::vector<double> mean;
+  for (const Scene& scene : scenes) {
+    const Picture picture = run(scene).picture;
+    const auto& alpha = picture.find("A")->values;
+    mean.resize(alpha.size());
+    for (std::size_t i = 0; i < alpha.size(); ++i)
+      mean[i] += static_cast<double>(alpha[i]) / static_cast<double>(scenes.size());
+  }
+  return mean;
+}
+
+double mean_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+/// The file from before it, at a time and for so long.
+Scene seen_at(const std::string& path, const GltfOptions& options, std::uint32_t samples) {
+  Scene scene = load_scene(path, {}, IntegratorKind::albedo, options);
+  scene.camera_given = scene.lights_given = true;
+  scene.camera.from = {1, 0.5, 12}, scene.camera.at = {1, 0.5, 0}, scene.camera.fov = 20;
+  scene.film.width = scene.film.height = 32;
+  scene.integrator.kind = IntegratorKind::albedo;
+  scene.integrator.samples = samples;
+  return scene;
+}
+
+/// What a file shows while the shutter is open is the mean of what it shows at the times in between.
+void expect_blur(const std::string& path, double time, double shutter) {
+  std::vector<Scene> frames;
+  for (int i = 0; i < 32; ++i) frames.push_back(seen_at(path, at_time(time + shutter * (i + 0.5) / 32), 4));
+  const std::vector<double> mean = mean_alpha(frames),
+                            blurred = mean_alpha({seen_at(path, at_time(time, shutter), 64)}),
+                            sharp = mean_alpha({seen_at(path, at_time(time), 64)});
+  EXPECT_LT(mean_difference(blurred, mean), 0.015);
+  EXPECT_GT(mean_difference(sharp, mean), 0.04);
+}
+
+TEST(GltfMotion, TheShutterBlursSkinsAndMorphTargets) {
+  expect_blur(Skinned().path, 0, 1);
+  // The only target moves the triangle across the picture.
+  GltfWriter out;
+  out.vectors({{0, -1, 0}, {1, -1, 0}, {0, 2, 0}});
+  out.array(std::vector<float>{0, 1}, kFloat, "SCALAR", 1);
+  out.array(std::vector<float>{0, 1}, kFloat, "SCALAR", 1);
+  out.vectors({{2, 0, 0}, {2, 0, 0}, {2, 0, 0}});
+  const GltfFiles files;
+  const auto write = [&](const std::string& primitive) {
+    return files.files.write(
+        "a.glb", out.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":"
+                         "[{\"POSITION\":3}]" +
+                         primitive +
+                         "}]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0.7,1]}],\"animations\":[{\"channels\":"
+                         "[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}}],\"samplers\":[{"
+                         "\"input\":1,\"output\":2}]}]"));
+  };
+  expect_blur(write(""), 0, 1);
+  // What moves between the first and the middle pose is blurred as much.
+  expect_blur(write(""), 0.25, 0.5);
+}
+
+/// Each moment of the shutter has the vertices between two of nine poses, which are those of the file then.
+TEST(GltfMotion, PosesOfTheShutterAreThoseOfTheirTimes) {
+  const Skinned skinned;
+  const GltfScene scene = load_gltf_scene(skinned.path, at_time(0.25, 0.5));
+  ASSERT_NE(scene.meshes.at(0).bending, nullptr);
+  const std::vector<MeshPose>& poses = scene.meshes[0].bending->poses;
+  ASSERT_EQ(poses.size(), 9u);
+  for (const MeshPose& pose : poses) {
+    const GltfScene then = load_gltf_scene(skinned.path, at_time(0.25 + 0.5 * pose.time));
+    EXPECT_EQ(then.meshes.at(0).bending, nullptr);
+    EXPECT_EQ(to_vector(pose.positions), to_vector(then.meshes[0].mesh->positions));
+    EXPECT_EQ(to_vector(pose.normals), to_vector(then.meshes[0].mesh->normals));
+    MeshShape shape;
+    shape.mesh = scene.meshes[0].mesh, shape.bending = scene.meshes[0].bending;
+    EXPECT_EQ(to_vector(mesh_at(shape, pose.time)->positions), to_vector(pose.positions));
+  }
+  // What is not bent meanwhile has none.
+  EXPECT_EQ(load_gltf_scene(skinned.path, at_time(5, 0.5)).meshes.at(0).bending, nullptr);
 }
 
 TEST(GltfMotion, DamagedMotionIsRefused) {
