@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/parallel.h"
@@ -344,6 +345,7 @@ class Build {
     if (part.is_indexed) {
       if (!in_place) row.resize_uninitialized(part.corners);
       read_gltf_indices(file_, part.indices, vertices, in_place ? out : row.data());
+      note_restart(part, {in_place ? out : row.data(), part.corners});
     }
     const auto corner = [&](std::uint64_t i) {
       return part.is_indexed ? row[i] : static_cast<std::uint32_t>(i);
@@ -370,6 +372,16 @@ class Build {
       }
     }
     if (part.picks) pick_used(part, out);
+  }
+
+  /// The greatest number of a type stands for the end of a strip elsewhere, and must not be used (glTF 2.0,
+  /// 3.7.2.1).
+  void note_restart(const Part& part, std::span<const std::uint32_t> corners) {
+    const std::uint32_t greatest = part.indices.number == GltfNumber::uint8 ? 0xff : 0xffff;
+    if (part.indices.number == GltfNumber::uint32 || part.elements[kPositions].count <= greatest) return;
+    if (std::ranges::find(corners, greatest) != corners.end())
+      warnings_.push_back(part.name + ": the index " + std::to_string(greatest) +
+                          " of its type, which must not be used, is read as that of a vertex");
   }
 
   /// Leaves only the elements that the part's corners name.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -187,27 +188,46 @@ class GltfConversion {
     }
   }
 
+  /// The number behind `what` in a name such as "TEXCOORD_1".
+  static std::optional<std::uint32_t> set_of(const std::string& name, std::string_view what) {
+    if (!name.starts_with(what)) return std::nullopt;
+    std::uint32_t set = 0;
+    const char *const first = name.data() + what.size(), *const end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(first, end, set);
+    // Not "TEXCOORD_01".
+    const bool good = error == std::errc() && rest == end && (*first != '0' || end == first + 1);
+    return good ? std::optional(set) : std::nullopt;
+  }
+
+  static bool is_known(const std::string& name) {
+    constexpr std::string_view kNames[] = {"POSITION", "NORMAL", "TANGENT"};
+    if (name.starts_with('_') || std::ranges::find(kNames, std::string_view(name)) != std::end(kNames))
+      return true;
+    constexpr std::string_view kSets[] = {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
+    return std::ranges::any_of(kSets, [&](std::string_view set) { return set_of(name, set).has_value(); });
+  }
+
   /// The attributes that are read, by their names; there are so many of what the numbers name.
   GltfAttributes attributes_of(const GltfJson& named, std::size_t count, const std::string& where,
-                               const char* what) const {
+                               const char* what) {
     GltfAttributes attributes;
     for (const auto& [name, value] : named.items()) {
       const auto number = [&, &value = value] {
         return checked_index(path_, value.get<std::uint64_t>(), count, where, what);
       };
-      constexpr std::string_view kSet = "TEXCOORD_";
       if (name == "POSITION") attributes.positions = number();
       if (name == "NORMAL") attributes.normals = number();
       if (name == "TANGENT") attributes.tangents = number();
-      if (!name.starts_with(kSet)) continue;
-      std::uint32_t set = 0;
-      const char* const end = name.data() + name.size();
-      const auto [rest, error] = std::from_chars(name.data() + kSet.size(), end, set);
-      if (error == std::errc() && rest == end) attributes.uvs.emplace_back(set, number());
+      if (const std::optional<std::uint32_t> set = set_of(name, "TEXCOORD_"))
+        attributes.uvs.emplace_back(*set, number());
+      if (!is_known(name)) warn(where + ": the attribute " + quote_name(name) + " is not known");
     }
     for (int i = 0; i < kMostInfluences; ++i) {
       const GltfJson *const joints = member(named, ("JOINTS_" + std::to_string(i)).c_str()),
                             *const weights = member(named, ("WEIGHTS_" + std::to_string(i)).c_str());
+      if ((joints == nullptr) != (weights == nullptr))
+        warn(where + ": JOINTS_" + std::to_string(i) + " and WEIGHTS_" + std::to_string(i) +
+             " belong together; the one that is there is not read");
       if (joints == nullptr || weights == nullptr) break;
       attributes.joints.push_back(checked_index(path_, joints->get<std::uint64_t>(), count, where, what));
       attributes.weights.push_back(checked_index(path_, weights->get<std::uint64_t>(), count, where, what));
@@ -217,14 +237,10 @@ class GltfConversion {
 
   /// The name in the mesh of what vertices carry as `name`; empty: they do not.
   static std::string carried_name(const std::string& name) {
-    constexpr std::string_view kColorSet = "COLOR_";
     if (name.starts_with('_')) return name.substr(1);
-    if (!name.starts_with(kColorSet)) return "";
-    std::uint32_t set = 0;
-    const char* const end = name.data() + name.size();
-    const auto [rest, error] = std::from_chars(name.data() + kColorSet.size(), end, set);
-    if (error != std::errc() || rest != end) return "";
-    return set == 0 ? kColorAttribute : kColorAttribute + ("_" + std::to_string(set));
+    const std::optional<std::uint32_t> set = set_of(name, "COLOR_");
+    if (!set) return "";
+    return *set == 0 ? kColorAttribute : kColorAttribute + ("_" + std::to_string(*set));
   }
 
   /// Adds what the primitive's mesh carries of `named`, as attributes_of reads it.
@@ -254,7 +270,20 @@ class GltfConversion {
       for (const GltfJson& p : primitives)
         mesh.primitives.push_back(
             primitive_of(p, where + "." + gltf_place("primitives", mesh.primitives.size())));
+      if (mesh.primitives.empty()) continue;
+      const std::size_t targets = mesh.primitives[0].targets.size();
+      if (std::ranges::any_of(mesh.primitives, [&](const auto& p) { return p.targets.size() != targets; }))
+        warn(where + ": its primitives have different numbers of morph targets");
+      check_weights(mesh.weights, mesh, where);
     }
+  }
+
+  void check_weights(const std::vector<double>& weights, const GltfMesh& mesh, const std::string& where) {
+    const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+    if (!weights.empty() && weights.size() != targets)
+      warn(where + ": " + std::to_string(weights.size()) + " weights for " + std::to_string(targets) +
+           " morph targets; " +
+           (weights.size() < targets ? "the others have none" : "the last ones are left out"));
   }
 
   GltfPrimitive primitive_of(const GltfJson& p, const std::string& where) {
@@ -350,6 +379,7 @@ class GltfConversion {
         node.light = index(*light, "light", out_.lights.size(), where, "light");
       node.skin = index(n, "skin", list_of(in_, "skins").size(), where, "skin");
       node.weights = numbers_of(n, "weights");
+      if (node.mesh != kNoId) check_weights(node.weights, out_.meshes[node.mesh], where);
       if (const GltfJson* const instances = extension_of(n, kGltfInstances)) {
         const GltfJson& attributes = instances->at("attributes");
         const std::size_t accessors = out_.accessors.size();
@@ -381,10 +411,23 @@ class GltfConversion {
     for (const GltfJson& root : list_of(scenes[shown], "nodes"))
       out_.roots.push_back(
           checked_index(path_, root.get<std::uint64_t>(), count, gltf_place("scenes", shown), "node"));
+    std::vector<std::uint32_t> parents(count, kNoId);
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (const std::uint32_t child : out_.nodes[i].children) parents[child] = i;
+    for (const std::uint32_t root : out_.roots)
+      if (parents[root] != kNoId)
+        warn(gltf_place("scenes", shown) + ": " + gltf_place("nodes", root) + " is a child of " +
+             gltf_place("nodes", parents[root]) + ", with which it moves");
   }
 
-  void set_transform(const GltfJson& n, const std::string& where, GltfNode& node) const {
+  void set_transform(const GltfJson& n, const std::string& where, GltfNode& node) {
     if (const std::vector<double> matrix = numbers_of(n, "matrix"); !matrix.empty()) {
+      node.has_matrix = true;
+      for (const char* const key : {"translation", "rotation", "scale"})
+        if (n.contains(key)) warn(where + ": its " + key + " is not read, as it has a matrix");
+      const double off = std::max(
+          {std::abs(matrix[3]), std::abs(matrix[7]), std::abs(matrix[11]), std::abs(matrix[15] - 1)});
+      if (!(off <= 1e-6)) warn(where + ": the last row of its matrix is not 0, 0, 0, 1, as which it is read");
       for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 4; ++column)
           node.to_parent.m[row][column] = matrix[4 * column + row];
@@ -460,6 +503,9 @@ class GltfConversion {
       return warn(where + ": animates what is not read");
     channel.path = static_cast<GltfChannel::Path>(path - std::begin(kPaths));
     channel.node = index(target, "node", out_.nodes.size(), where, "node");
+    // Of what the parts of a matrix are, opinions differ.
+    if (channel.path != GltfChannel::Path::weights && out_.nodes[channel.node].has_matrix)
+      return warn(where + ": " + gltf_place("nodes", channel.node) + " has a matrix; it is not animated");
     constexpr std::string_view kCurves[] = {"LINEAR", "STEP", "CUBICSPLINE"};
     const std::string curve = text_of(sampler, "interpolation", "LINEAR");
     const auto* const found = std::ranges::find(kCurves, std::string_view(curve));

@@ -145,6 +145,7 @@ struct GltfNode {
   /// Accessors of EXT_mesh_gpu_instancing; kNoId: none.
   std::uint32_t instance_translations = kNoId, instance_rotations = kNoId, instance_scales = kNoId;
   bool is_instanced = false;
+  bool has_matrix = false;  ///< its transform is not in parts
 };
 
 struct GltfSkin {

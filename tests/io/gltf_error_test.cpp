@@ -287,5 +287,81 @@ TEST(GltfError, FilesOutsideOfTheRootAreRefused) {
       testing::ExitedWithCode(3), "it lies outside of the folder that files may be read from");
 }
 
+// What the specification forbids, but leaves no doubt or nothing to see.
+
+/// The warnings of a triangle with morph targets whose JSON holds `mesh` and `rest`.
+std::vector<std::string> warnings_with(const std::string& primitive, const std::string& mesh,
+                                       const std::string& rest) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.array(std::vector<std::uint8_t>(12), kUint8, "VEC4", 4);
+  out.array(std::vector<float>(12), kFloat, "VEC4", 4);
+  return files.warnings(out.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0" + primitive +
+                                "}]" + mesh + "}]," + rest));
+}
+
+TEST(GltfError, WhatIsForbiddenButReadIsSaid) {
+  const std::string node = "\"nodes\":[{\"mesh\":0}]";
+  const std::string targets = "},\"targets\":[{\"POSITION\":0}]";
+  using Lines = std::vector<std::string>;
+  const auto said = [](const std::string& what) { return Lines{"a.glb: warning: " + what}; };
+  EXPECT_EQ(warnings_with("}", "", node), Lines{});
+  const std::string place = "meshes[0].primitives[0]: ";
+  EXPECT_EQ(warnings_with(",\"OTHER\":0}", "", node), said(place + "the attribute 'OTHER' is not known"));
+  EXPECT_EQ(warnings_with(",\"COLOR_00\":2}", "", node),
+            said(place + "the attribute 'COLOR_00' is not known"));
+  EXPECT_EQ(warnings_with(",\"JOINTS_0\":1}", "", node),
+            said(place + "JOINTS_0 and WEIGHTS_0 belong together; the one that is there is not read"));
+  EXPECT_EQ(warnings_with(",\"JOINTS_0\":1,\"WEIGHTS_0\":2,\"WEIGHTS_1\":2}", "", node),
+            said(place + "JOINTS_1 and WEIGHTS_1 belong together; the one that is there is not read"));
+  EXPECT_EQ(warnings_with(targets, ",\"weights\":[0,0]", node),
+            said("meshes[0]: 2 weights for 1 morph targets; the last ones are left out"));
+  EXPECT_EQ(warnings_with(targets, "", "\"nodes\":[{\"mesh\":0,\"weights\":[0,0,0]}]"),
+            said("nodes[0]: 3 weights for 1 morph targets; the last ones are left out"));
+  EXPECT_EQ(warnings_with(targets + "},{\"attributes\":{\"POSITION\":0}", "", node),
+            said("meshes[0]: its primitives have different numbers of morph targets"));
+  EXPECT_EQ(
+      warnings_with("}", "", "\"nodes\":[{\"mesh\":0},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"),
+      said("scenes[0]: nodes[0] is a child of nodes[1], with which it moves"));
+  const std::string matrix = "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,";
+  EXPECT_EQ(warnings_with("}", "", "\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2]," + matrix + "1]}]"),
+            said("nodes[0]: its scale is not read, as it has a matrix"));
+  EXPECT_EQ(warnings_with("}", "", "\"nodes\":[{\"mesh\":0," + matrix + "2]}]"),
+            said("nodes[0]: the last row of its matrix is not 0, 0, 0, 1, as which it is read"));
+  EXPECT_EQ(warnings_with("}", "", "\"nodes\":[{\"mesh\":0," + matrix + "0.99999997]}]"), Lines{});
+  EXPECT_EQ(warnings_with("}", "",
+                          "\"nodes\":[{\"mesh\":0," + matrix +
+                              "1]}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                              "\"path\":\"scale\"}}],\"samplers\":[{\"input\":0,\"output\":0}]}]"),
+            said("animations[0].channels[0]: nodes[0] has a matrix; it is not animated"));
+}
+
+// The greatest number of a type ends a strip elsewhere.
+TEST(GltfError, IndicesThatMustNotBeUsedAreSaid) {
+  const GltfFiles files;
+  for (const bool is_short : {false, true})
+    for (const int less : {0, 1}) {
+      const std::uint32_t greatest = is_short ? 0xffff : 0xff;
+      GltfWriter out;
+      std::vector<Vec3f> points(greatest + 1, Vec3f{0, 0, 0});
+      points[greatest - static_cast<std::uint32_t>(less)] = {1, 0, 0}, points[1] = {0, 1, 0};
+      out.vectors(points);
+      const std::uint32_t last = greatest - static_cast<std::uint32_t>(less);
+      is_short
+          ? out.array(std::vector<std::uint16_t>{0, static_cast<std::uint16_t>(last), 1}, kUint16, "SCALAR",
+                      1)
+          : out.array(std::vector<std::uint8_t>{0, static_cast<std::uint8_t>(last), 1}, kUint8, "SCALAR", 1);
+      const MeshFile file = files.load(out.glb(one_node("{\"attributes\":{\"POSITION\":0},\"indices\":1}")));
+      EXPECT_EQ(file.mesh.triangle_count(), 1u);
+      EXPECT_EQ(files.files.as_text(file.warnings),
+                less == 1
+                    ? std::vector<std::string>{}
+                    : std::vector<std::string>{
+                          "a.glb: warning: meshes[0].primitives[0]: the index " + std::to_string(greatest) +
+                          " of its type, which must not be used, is read as that of a vertex"});
+    }
+}
+
 }  // namespace
 }  // namespace oktett::test::gltf_error_test
