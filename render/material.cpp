@@ -81,13 +81,16 @@ PhongValues resembling_values(const PrincipledParameters& p) {
   // The exponent whose highlight is as wide as facets of that roughness.
   const float alpha = std::max(p.roughness * p.roughness, 0.01f);
   v.phong = std::max(2 / (alpha * alpha) - 2, 0.0f);
-  const float dielectric = 0.08f * unit(p.specular) * opaque;
+  const float head_on = std::min(0.08f * unit(p.specular) * max_component(p.specular_color), 1.0f);
+  const float dielectric = head_on * unit(p.specular_weight) * opaque;
   v.specular = (mirror ? dielectric : metal + dielectric) * std::min(1.0f, (v.phong + 2) / 16);
   return v;
 }
 
 Color resembling_specular_color(const PrincipledParameters& p) {
-  return unit(p.metallic) > 0.5f ? p.base_color : Color{1, 1, 1};
+  if (unit(p.metallic) > 0.5f) return p.base_color;
+  const float most = max_component(p.specular_color);
+  return most > 0 ? p.specular_color * (1 / most) : Color{1, 1, 1};
 }
 
 void resemble_principled(Material& m) {

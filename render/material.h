@@ -66,6 +66,15 @@ struct PrincipledMaterial {
 #undef OKTETT_TEXTURE
   /// Of colours of `parameters.conductor`, if that is given.
   std::uint32_t eta_texture = kNoId, k_texture = kNoId;
+  /// Tangent-space normals of the coat, and the factor of their tilt. Without them, it has the normals of
+  /// what lies below, or if it is even those without bumps.
+  std::uint32_t coat_normal_texture = kNoId;
+  float coat_normal_scale = 1;
+  bool even_coat = false;
+  /// Where `anisotropy` widens facets: degrees from the tangent towards the bitangent, and an image whose red
+  /// and green are the direction from which they count, 0.5 being 0.
+  float anisotropy_rotation = 0;
+  std::uint32_t anisotropy_direction_texture = kNoId;
   /// Whitted's model shows at each hit what comes near to the parameters there, see resemble_principled;
   /// false: it shows the numbers of Material.
   bool resembled = false;
@@ -186,7 +195,8 @@ OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
   if (!m.principled) return;
   for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
   for (const PrincipledColor& color : kPrincipledColors) f((*m.principled).*color.texture);
-  f(m.principled->eta_texture), f(m.principled->k_texture);
+  f(m.principled->eta_texture), f(m.principled->k_texture), f(m.principled->coat_normal_texture);
+  f(m.principled->anisotropy_direction_texture);
 }
 
 /// The range of a textured Material::ior.

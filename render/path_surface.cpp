@@ -1,5 +1,6 @@
 #include "render/path_surface.h"
 
+#include "render/dispersion.h"
 #include "render/shading_point.h"
 
 namespace oktett {
@@ -13,8 +14,14 @@ static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
   return phong_bsdf(phong_parameters(p), wo, p.front);
 }
 
+static ShadingFrame<Bsdf::D> frame_of(const ShadingPoint& p) {
+  ShadingFrame<Bsdf::D> frame(broadcast<BsdfFloat>(p.ns), broadcast<BsdfFloat>(p.ng));
+  if (p.principled) frame.turn(p.principled->stretch);
+  return frame;
+}
+
 SurfaceBsdf::SurfaceBsdf(const ShadingPoint& p)
-    : frame_(broadcast<BsdfFloat>(p.ns), broadcast<BsdfFloat>(p.ng)),
+    : frame_(frame_of(p)),
       bsdf_(bsdf_of(p, only_lane(frame_.to_local(broadcast<BsdfFloat>(-p.direction))))),
       transmits_(bsdf_.transmits()) {}
 
@@ -75,9 +82,16 @@ void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool fron
   s.only_delta = s.layers.only_delta();
 }
 
+/// Whether its parameters depend on the hit or the path, beside textures.
+bool varies_with_hit(const Material& m) {
+  if (!m.principled) return false;
+  const PrincipledParameters& p = m.principled->parameters;
+  return p.anisotropy > 0 || disperses(p);
+}
+
 PathSurface path_surface(const Material& m, bool front) {
   PathSurface s;
-  s.alone = has_textures(m) || m.opacity != 1 || !m.surface;
+  s.alone = has_textures(m) || m.opacity != 1 || !m.surface || varies_with_hit(m);
   s.glows = glows(m);
   if (front || m.emits_behind) s.emission = m.emission;
   if (s.alone) return s;

@@ -89,6 +89,11 @@ bool has_textures(const Material& m) {
   return some;
 }
 
+/// Whether surfaces of the material have facets that are wider along a direction of uv.
+static bool is_stretched(const Material& m) {
+  return m.principled && m.principled->parameters.anisotropy > 0;
+}
+
 // ---- Points.
 
 namespace {
@@ -296,21 +301,30 @@ MapAxes tangent_axes(const RenderContext& c, const Hit& hit, const Vec3f& n) {
   return {first, is_left ? cross(n, first) : cross(first, n)};
 }
 
-/// The normal from a tangent-space normal map: its first axis runs along the mesh's tangents, else along the
-/// image's own; its second to the side of the image's second one.
-Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Hit& hit,
-             const Vec3f& n, const UvPlace& place) {
-  if (c.textures == nullptr) return n;
+/// The unit vectors of tangent space about a normal: the first runs along the mesh's tangents, else along the
+/// image's own; the second to the side of the image's second one. Nothing where uv say nothing.
+std::optional<MapAxes> unit_axes(const RenderContext& c, std::uint32_t texture, const SurfaceInteraction& s,
+                                 const Hit& hit, const Vec3f& n) {
   MapAxes axes = tangent_axes(c, hit, n);
   Vec3f flat = axes.first - n * dot(axes.first, n);
   if (!(dot(flat, flat) > 0)) {
-    axes = image_axes(c, m.normal_texture, s);
+    axes = image_axes(c, texture, s);
     flat = axes.first - n * dot(axes.first, n);
   }
-  if (!(dot(flat, flat) > 0)) return n;
-  const Vec3f t = normalize(flat), left = cross(n, t), b = dot(left, axes.second) < 0 ? -left : left;
-  const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, place.dx, place.dy) * 2 - Vec3f{1, 1, 1};
-  return unit_normal(t * (texel.x * m.normal_scale) + b * (texel.y * m.normal_scale) + n * texel.z, n);
+  if (!(dot(flat, flat) > 0)) return std::nullopt;
+  const Vec3f t = normalize(flat), left = cross(n, t);
+  return MapAxes{t, dot(left, axes.second) < 0 ? -left : left};
+}
+
+/// The normal from a tangent-space normal map.
+Vec3f mapped(const RenderContext& c, std::uint32_t texture, float scale, const SurfaceInteraction& s,
+             const Hit& hit, const Vec3f& n, const UvPlace& place) {
+  if (c.textures == nullptr) return n;
+  const std::optional<MapAxes> axes = unit_axes(c, texture, s, hit, n);
+  if (!axes) return n;
+  const auto& [t, b] = *axes;
+  const Vec3f texel = c.textures->normal(texture, s.uv, place.dx, place.dy) * 2 - Vec3f{1, 1, 1};
+  return unit_normal(t * (texel.x * scale) + b * (texel.y * scale) + n * texel.z, n);
 }
 
 /// The gradient along a triangle of the number that a texture takes from an attribute, without its gain.
@@ -398,13 +412,44 @@ class TexturedHit {
     } else if (m_.bump_texture != kNoId) {
       n = bumped(context_, m_, surface_of(m_.bump_texture), n, place_of(m_.bump_texture));
     }
-    if (m_.normal_texture == kNoId) return n;
-    return mapped(context_, m_, surface_of(m_.normal_texture), hit_, n, place_of(m_.normal_texture));
+    return mapped_by(m_.normal_texture, m_.normal_scale, n);
+  }
+
+  /// That of the coat, if it is not that of the surface.
+  std::optional<Vec3f> coat_normal() const {
+    if (!m_.principled) return std::nullopt;
+    const PrincipledMaterial& p = *m_.principled;
+    if (p.coat_normal_texture == kNoId && !p.even_coat) return std::nullopt;
+    return mapped_by(p.coat_normal_texture, p.coat_normal_scale, s_.shading_normal);
+  }
+
+  /// The direction along which facets are wider, in space.
+  std::optional<Vec3f> stretch() const {
+    if (!is_stretched(m_)) return std::nullopt;
+    const PrincipledMaterial& p = *m_.principled;
+    const std::uint32_t texture = p.anisotropy_direction_texture;
+    const SurfaceInteraction& s = surface_of(texture);
+    const std::optional<MapAxes> axes = unit_axes(context_, texture, s, hit_, s_.shading_normal);
+    if (!axes) return std::nullopt;
+    float x = 1, y = 0;
+    if (texture != kNoId && context_.textures != nullptr) {
+      const UvPlace& at = place_of(texture);
+      const Vec3f texel = context_.textures->normal(texture, s.uv, at.dx, at.dy);
+      if (texel.x != 0.5f || texel.y != 0.5f) x = 2 * texel.x - 1, y = 2 * texel.y - 1;
+    }
+    const double angle = double{p.anisotropy_rotation} * kDegree;
+    const auto cosine = static_cast<float>(portable::cos(angle)),
+               sine = static_cast<float>(portable::sin(angle));
+    return axes->first * (cosine * x - sine * y) + axes->second * (sine * x + cosine * y);
   }
 
   TexturePlace place;
 
  private:
+  Vec3f mapped_by(std::uint32_t texture, float scale, const Vec3f& n) const {
+    if (texture == kNoId) return n;
+    return mapped(context_, texture, scale, surface_of(texture), hit_, n, place_of(texture));
+  }
   const UvPlace& place_of(std::uint32_t texture) const {
     return uv_place(context_.texture_list, texture, place);
   }
@@ -427,13 +472,36 @@ TexturePlace texture_place(const RenderContext& context, const Material& m, cons
   return TexturedHit(context, m, surface_interaction(*context.world->accel, ray, hit), hit).place;
 }
 
+using OneFloat = Simd<float, 1, ScalarIsa>;
+
 /// Sets `front`, `ng` and `ns`.
 void face_ray(ShadingPoint& p, const Vec3f& shading_normal) {
-  using F = Simd<float, 1, ScalarIsa>;
-  Vec3<F> ng, ns;
-  p.front = none(face_ray(broadcast<F>(p.direction), broadcast<F>(p.surface.geometric_normal),
-                          broadcast<F>(shading_normal), ng, ns));
+  Vec3<OneFloat> ng, ns;
+  p.front = none(face_ray(broadcast<OneFloat>(p.direction), broadcast<OneFloat>(p.surface.geometric_normal),
+                          broadcast<OneFloat>(shading_normal), ng, ns));
   p.ng = only_lane(ng), p.ns = only_lane(ns);
+}
+
+/// What a hit knows of the frame of its normal, beyond that.
+struct HitFrame {
+  std::optional<Vec3f> coat_normal;  ///< if it is not the normal of the surface
+  std::optional<Vec3f> stretch;      ///< the direction along which facets are wider
+};
+
+/// Sets what parameters say in the frame of `ns`.
+void set_frame(const ShadingPoint& p, const HitFrame& hit, PrincipledParameters& out) {
+  ShadingFrame<Simd<double, 1, ScalarIsa>> frame(broadcast<OneFloat>(p.ns), broadcast<OneFloat>(p.ng));
+  if (hit.stretch) {
+    const Vec3f along = only_lane(frame.to_local(broadcast<OneFloat>(*hit.stretch)));
+    const float size = std::sqrt(along.x * along.x + along.y * along.y);
+    if (size > 0) out.stretch = {along.x / size, along.y / size};
+    frame.turn(out.stretch);
+  }
+  if (!hit.coat_normal) return;
+  Vec3<OneFloat> ng, ns;
+  face_ray(broadcast<OneFloat>(p.direction), broadcast<OneFloat>(p.surface.geometric_normal),
+           broadcast<OneFloat>(*hit.coat_normal), ng, ns);
+  out.coat_normal = only_lane(frame.to_local(ns));
 }
 
 }  // namespace
@@ -442,7 +510,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
                            const RayHistory& history, const SurfaceInteraction& found) {
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
-  const bool textured_here = has_textures(*p.material);
+  const bool textured_here = has_textures(*p.material) || is_stretched(*p.material);
   p.surface = textured_here ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
@@ -450,12 +518,14 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   const SurfaceInteraction& s = p.surface;
   TexturePlace place;
   Vec3f ns = s.shading_normal;
+  HitFrame frame;
   if (textured_here) {
     TexturedHit textures(context, m, s, hit);
     Vec3f x, y;
     pixel_vectors(context, ray, hit, s, history, x, y);
     textures.set_footprints(x, y);
     ns = textures.shading_normal();
+    frame = {textures.coat_normal(), textures.stretch()};
     place = textures.place;
   }
   p.color = color_at(context, m, place);
@@ -468,6 +538,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   if (resembles && shows_principled(context, m)) set_principled(context, place, p);
   p.normal = ns;
   face_ray(p, ns);
+  if (p.principled && (frame.coat_normal || frame.stretch)) set_frame(p, frame, *p.principled);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
   return p;
 }
@@ -518,7 +589,8 @@ namespace {
 
 /// How smooth glass splits light at a face, colour left out: what goes on, and what stays inside.
 struct FaceSplit {
-  double passed = 0, reflected = 0;
+  Vec3d passed;
+  double reflected = 0;
 };
 
 /// A face of glass that light crosses straight.
@@ -539,7 +611,8 @@ struct StraightFace {
 /// Of Phong's model.
 FaceSplit split_at(const StraightFace& face, double transparency) {
   const double reflectance = face.inside ? fresnel(face.before, face.ior) : 1;
-  return {transparency * (1 - reflectance), transparency * reflectance};
+  const double passed = transparency * (1 - reflectance);
+  return {{passed, passed, passed}, transparency * reflectance};
 }
 
 /// Of the principled material, for path tracing. Nothing passes if it scatters the light that it lets
@@ -548,12 +621,12 @@ FaceSplit split_at(const StraightFace& face, double transparency) {
 FaceSplit split_at(const StraightFace& face, PrincipledParameters p, bool front) {
   p.ior = static_cast<float>(face.ior);
   if (!is_smooth_glass(p)) return {};
-  if (!p.thin && !face.inside) return {0, 1};
+  if (!p.thin && !face.inside) return {{}, 1};
   using D = Simd<double, 1, ScalarIsa>;
   const auto cosine = static_cast<float>(front || p.thin ? face.before : *face.inside);
   const Vec3f viewer{std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine};
   const PrincipledSurface surface(p, front);
-  const D passed = PrincipledLobes<D>(surface, broadcast<FloatsOf<D>>(viewer)).passing_glass();
+  const Vec3<D> passed = PrincipledLobes<D>(surface, broadcast<FloatsOf<D>>(viewer)).passing_glass();
   // A thin wall has no inside.
   return {only_lane(passed), p.thin ? 0 : surface.glass * fresnel(face.before, face.ior)};
 }
@@ -584,7 +657,8 @@ StraightPassage straight_passage(const RenderContext& context, const Ray& ray, c
       by_path ? split_at(face, principled_at(context, *m.principled, color, place), passage.front)
               : split_at(face, static_cast<double>(transparency_at(context, m, place)));
   const Color filter = m.filter && !by_path ? *m.filter : color;
-  passage.passed = filter * (static_cast<float>(split.passed) * opacity) + passage.passed;
+  for (int k = 0; k < 3; ++k)
+    passage.passed[k] = filter[k] * (static_cast<float>(split.passed[k]) * opacity) + passage.passed[k];
   passage.reflected = std::clamp(static_cast<float>(split.reflected) * opacity, 0.0f, 1.0f);
   return passage;
 }

@@ -7,6 +7,7 @@
 
 #include "accel/accel.h"
 #include "core/error.h"
+#include "core/math.h"
 #include "core/mesh_geometry.h"
 #include "io/gltf/glb_images.h"
 #include "io/gltf/gltf_file.h"
@@ -102,8 +103,10 @@ int GltfMaterialWriter::add(std::size_t slot) {
   set_opacity(m, opacity, out);
   set_metal(p, out);
   set_glass(p, m.interior, out);
-  set_layers(p, out);
   set_normals(m, slot, out);
+  set_layers(p, out);
+  set_anisotropy(p, out);
+  set_iridescence(p, out);
   model_.materials.push_back(std::move(out));
   return static_cast<int>(model_.materials.size()) - 1;
 }
@@ -222,6 +225,9 @@ void GltfMaterialWriter::set_glass(const PrincipledMaterial& p, std::uint32_t in
       glass.emplace("transmissionTexture", Value(info(p.transmission_texture)));
     extend(out, "KHR_materials_transmission", std::move(glass));
     if (p.parameters.thin) return;
+    if (p.parameters.dispersion > 0)
+      extend(out, "KHR_materials_dispersion",
+             {{"dispersion", Value(static_cast<double>(p.parameters.dispersion))}});
     Value::Object volume{{"thicknessFactor", Value(1.0)}};
     if (interior != kNoId && interior < file_.media.size()) {
       const Color& a = file_.media[interior].absorption;
@@ -234,20 +240,84 @@ void GltfMaterialWriter::set_glass(const PrincipledMaterial& p, std::uint32_t in
   }
 }
 
+void GltfMaterialWriter::set_specular(const PrincipledMaterial& p, tinygltf::Material& out) {
+  const PrincipledParameters& n = p.parameters;
+  const Color color = n.specular_color * (2 * n.specular);
+  const bool has_textures = p.specular_weight_texture != kNoId || p.specular_color_texture != kNoId;
+  if (n.specular_weight == 1 && color == Color{1, 1, 1} && !has_textures) return;
+  Value::Object specular{{"specularFactor", Value(unit(n.specular_weight))},
+                         {"specularColorFactor", Value(numbers(color))}};
+  if (is_plain(p.specular_weight_texture, ImageChannel::alpha))
+    specular.emplace("specularTexture", Value(info(p.specular_weight_texture)));
+  if (is_plain(p.specular_color_texture, ImageChannel::red))
+    specular.emplace("specularColorTexture", Value(info(p.specular_color_texture)));
+  extend(out, "KHR_materials_specular", std::move(specular));
+}
+
+/// One image has direction and strength.
+void GltfMaterialWriter::set_anisotropy(const PrincipledMaterial& p, tinygltf::Material& out) {
+  if (p.parameters.anisotropy == 0) return;
+  Value::Object anisotropy{{"anisotropyStrength", Value(unit(p.parameters.anisotropy))}};
+  if (p.anisotropy_rotation != 0)
+    anisotropy.emplace("anisotropyRotation", Value(double{p.anisotropy_rotation} * kDegree));
+  const std::uint32_t direction = p.anisotropy_direction_texture;
+  if (is_plain(p.anisotropy_texture, ImageChannel::blue) && is_plain(direction, ImageChannel::red)) {
+    Texture strength = file_.textures[p.anisotropy_texture];
+    strength.channel = ImageChannel::red;
+    if (strength == file_.textures[direction]) {
+      anisotropy.emplace("anisotropyTexture", Value(info(direction)));
+      if (written_.contains(direction)) written_.insert(p.anisotropy_texture);
+    }
+  }
+  extend(out, "KHR_materials_anisotropy", std::move(anisotropy));
+}
+
+void GltfMaterialWriter::set_iridescence(const PrincipledMaterial& p, tinygltf::Material& out) {
+  const PrincipledParameters& n = p.parameters;
+  if (n.iridescence == 0) return;
+  const auto thickness = static_cast<double>(n.iridescence_thickness);
+  Value::Object film{{"iridescenceFactor", Value(unit(n.iridescence))},
+                     {"iridescenceIor", Value(static_cast<double>(n.iridescence_ior))}};
+  if (is_plain(p.iridescence_texture, ImageChannel::red))
+    film.emplace("iridescenceTexture", Value(info(p.iridescence_texture)));
+  double least = thickness, most = thickness;
+  if (p.iridescence_thickness_texture != kNoId) {
+    const Texture& t = file_.textures[p.iridescence_thickness_texture];
+    Texture plain = t;
+    plain.gain = 1, plain.base = 0;
+    const int index = t.channel == ImageChannel::green ? texture_of(plain) : -1;
+    if (index >= 0) {
+      tinygltf::TextureInfo use;
+      use.index = index;
+      place(t, use.texCoord, use.extensions);
+      written_.insert(p.iridescence_thickness_texture);
+      film.emplace("iridescenceThicknessTexture", Value(object_of(use)));
+      least = thickness * double{t.base}, most = thickness * (double{t.base} + double{t.gain});
+    }
+  }
+  film.emplace("iridescenceThicknessMinimum", Value(std::max(least, 0.0)));
+  film.emplace("iridescenceThicknessMaximum", Value(std::max(most, 0.0)));
+  extend(out, "KHR_materials_iridescence", std::move(film));
+}
+
 void GltfMaterialWriter::set_layers(const PrincipledMaterial& p, tinygltf::Material& out) {
   const PrincipledParameters& n = p.parameters;
-  if (n.specular != 0.5f || p.specular_texture != kNoId) {
-    Value::Object specular{{"specularFactor", Value(unit(2 * n.specular))}};
-    if (is_plain(p.specular_texture, ImageChannel::alpha))
-      specular.emplace("specularTexture", Value(info(p.specular_texture)));
-    extend(out, "KHR_materials_specular", std::move(specular));
-  }
+  set_specular(p, out);
   if (n.coat > 0) {
     Value::Object coat{{"clearcoatFactor", Value(unit(n.coat))},
                        {"clearcoatRoughnessFactor", Value(unit(n.coat_roughness))}};
     if (is_plain(p.coat_texture, ImageChannel::red)) coat.emplace("clearcoatTexture", info(p.coat_texture));
     if (is_plain(p.coat_roughness_texture, ImageChannel::green))
       coat.emplace("clearcoatRoughnessTexture", info(p.coat_roughness_texture));
+    tinygltf::NormalTextureInfo normals = p.even_coat ? tinygltf::NormalTextureInfo{} : out.normalTexture;
+    if (p.coat_normal_texture != kNoId) {
+      normals = {};
+      set(p.coat_normal_texture, normals);
+      normals.scale = double{p.coat_normal_scale};
+    }
+    Value::Object object = object_of(normals);
+    object.emplace("scale", Value(normals.scale));
+    coat.emplace("clearcoatNormalTexture", Value(std::move(object)));
     extend(out, "KHR_materials_clearcoat", std::move(coat));
   }
   if (n.sheen > 0) {
@@ -270,11 +340,14 @@ bool GltfMaterialWriter::is_plain(std::uint32_t index, ImageChannel channel) con
 
 /// The index of the texture in the model; -1 if it cannot be.
 int GltfMaterialWriter::texture(std::uint32_t index) {
-  const Texture& t = file_.textures[index];
+  const int made = texture_of(file_.textures[index]);
+  if (made >= 0) written_.insert(index);
+  return made;
+}
+
+int GltfMaterialWriter::texture_of(const Texture& t) {
   const int source = t.pattern || !t.attribute.empty() || t.gain != 1 || t.base != 0 ? -1 : image(t);
-  if (source < 0) return -1;
-  written_.insert(index);
-  return add_texture(t, source);
+  return source < 0 ? -1 : add_texture(t, source);
 }
 
 int GltfMaterialWriter::add_texture(const Texture& t, int image) {
@@ -340,6 +413,12 @@ void GltfMaterialWriter::set(std::uint32_t index, Info& info) {
 Value::Object GltfMaterialWriter::info(std::uint32_t index) {
   tinygltf::TextureInfo made;
   set(index, made);
+  return object_of(made);
+}
+
+/// What says how a texture is used, as part of an extension. `extend` leaves it out if there is none.
+template <class Info>
+Value::Object GltfMaterialWriter::object_of(const Info& made) {
   Value::Object object{{"index", Value(made.index)}};
   if (made.texCoord != 0) object.emplace("texCoord", Value(made.texCoord));
   if (!made.extensions.empty())

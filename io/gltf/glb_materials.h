@@ -34,16 +34,22 @@ class GltfMaterialWriter {
   void set_normals(const Material& m, std::size_t slot, tinygltf::Material& out);
   void set_metal(const PrincipledMaterial& p, tinygltf::Material& out);
   void set_glass(const PrincipledMaterial& p, std::uint32_t interior, tinygltf::Material& out);
+  void set_specular(const PrincipledMaterial& p, tinygltf::Material& out);
+  void set_anisotropy(const PrincipledMaterial& p, tinygltf::Material& out);
+  void set_iridescence(const PrincipledMaterial& p, tinygltf::Material& out);
   void set_layers(const PrincipledMaterial& p, tinygltf::Material& out);
 
   bool is_plain(std::uint32_t texture, ImageChannel channel) const;
   int texture(std::uint32_t index);
+  int texture_of(const Texture& texture);
   int sampler(TextureWraps wrap);
   int image(const Texture& texture);
   int add_image(const std::string& key, const std::string& bytes);
   int add_texture(const Texture& texture, int image);
   void place(const Texture& texture, int& set, tinygltf::ExtensionMap& extensions);
   tinygltf::Value::Object info(std::uint32_t index);
+  template <class Info>
+  static tinygltf::Value::Object object_of(const Info& info);
   template <class Info>
   void set(std::uint32_t index, Info& info);
   void extend(tinygltf::Material& out, const char* name, tinygltf::Value::Object values);

@@ -34,8 +34,7 @@ class MaterialReader {
     read_color(in_, "emissiveFactor", kMost, out_.emission);
     read(pbr, "baseColorTexture", out_.base_texture);
     read(pbr, "metallicRoughnessTexture", out_.metallic_roughness_texture);
-    read(in_, "normalTexture", out_.normal_texture);
-    if (const GltfJson* const normal = member(in_, "normalTexture")) out_.normal_scale = scale_of(*normal);
+    read_normals(in_, "normalTexture", out_.normal_texture, out_.normal_scale);
     read(in_, "emissiveTexture", out_.emission_texture);
     out_.double_sided = flag_of(in_, "doubleSided");
     read_alpha();
@@ -68,10 +67,13 @@ class MaterialReader {
       warn("unknown alphaMode " + quote_name(mode) + "; it is opaque");
   }
 
-  float scale_of(const GltfJson& normal) const {
-    const double scale = number_of(normal, "scale", 1);
+  void read_normals(const GltfJson& object, const char* key, GltfTextureUse& out, float& out_scale) const {
+    read(object, key, out);
+    const GltfJson* const normals = member(object, key);
+    if (normals == nullptr) return;
+    const double scale = number_of(*normals, "scale", 1);
     if (!(std::abs(scale) <= 1e6)) fail("the scale of its normals is out of range");
-    return static_cast<float>(scale);
+    out_scale = static_cast<float>(scale);
   }
 
   float signed_number(double x) const {
@@ -131,20 +133,23 @@ class MaterialReader {
     const GltfJson& specular = extension("KHR_materials_specular");
     read(specular, "specularFactor", 1, out_.specular);
     read(specular, "specularTexture", out_.specular_texture);
-    if (specular.contains("specularColorFactor") || specular.contains("specularColorTexture"))
-      warn("the colour of its reflections is not read");
+    read_color(specular, "specularColorFactor", kMost, out_.specular_color);
+    read(specular, "specularColorTexture", out_.specular_color_texture);
     const GltfJson& coat = extension("KHR_materials_clearcoat");
     read(coat, "clearcoatFactor", 1, out_.coat);
     read(coat, "clearcoatTexture", out_.coat_texture);
     read(coat, "clearcoatRoughnessFactor", 1, out_.coat_roughness);
     read(coat, "clearcoatRoughnessTexture", out_.coat_roughness_texture);
-    if (coat.contains("clearcoatNormalTexture")) warn("the normals of its coat are not read");
+    read_normals(coat, "clearcoatNormalTexture", out_.coat_normal_texture, out_.coat_normal_scale);
     read_sheen(extension("KHR_materials_sheen"));
+    read_anisotropy(extension("KHR_materials_anisotropy"));
+    read_iridescence(extension("KHR_materials_iridescence"));
+    read(extension("KHR_materials_dispersion"), "dispersion", kMostDispersion, out_.dispersion);
     if (const GltfJson* const gloss = extension_of(in_, "KHR_materials_pbrSpecularGlossiness"))
       read_gloss(*gloss);
   }
 
-  /// As near to it as metal and plastic come: its textures of reflections count by their gloss alone.
+  /// As near to it as metal and plastic come. Of one colour, what reflects more than plastic is metal.
   void read_gloss(const GltfJson& gloss) {
     Color diffuse{1, 1, 1}, specular{1, 1, 1};
     if (const std::vector<double> base = numbers_of(gloss, "diffuseFactor"); !base.empty()) {
@@ -159,14 +164,29 @@ class MaterialReader {
     read(gloss, "diffuseTexture", out_.base_texture);
     read(gloss, "specularGlossinessTexture", out_.gloss_texture);
     out_.is_glossy = true;
-    const bool shows_texture = out_.gloss_texture.texture != kNoId;
-    if (shows_texture) warn("the colours of its reflections are not read");
-    // What reflects more than plastic is metal, of the colour of its reflections.
+    out_.specular_color_texture = out_.gloss_texture;
     constexpr float kPlastic = 0.04f;
     const float most = max_component(specular);
+    const bool shows_texture = out_.gloss_texture.texture != kNoId;
     out_.metallic = shows_texture ? 0 : std::clamp((most - kPlastic) / (1 - kPlastic), 0.0f, 1.0f);
     out_.base_color = diffuse * (1 - out_.metallic) + specular * out_.metallic;
-    if (!shows_texture && out_.metallic == 0) out_.specular = most / kPlastic;
+    if (out_.metallic == 0) out_.specular_color = specular * (1 / kPlastic);
+  }
+
+  void read_anisotropy(const GltfJson& anisotropy) {
+    read(anisotropy, "anisotropyStrength", 1, out_.anisotropy);
+    read(anisotropy, "anisotropyTexture", out_.anisotropy_texture);
+    out_.anisotropy_rotation = number_of(anisotropy, "anisotropyRotation", 0);
+    if (!(std::abs(out_.anisotropy_rotation) <= 1e6)) fail("'anisotropyRotation' is out of range");
+  }
+
+  void read_iridescence(const GltfJson& film) {
+    read(film, "iridescenceFactor", 1, out_.iridescence);
+    read(film, "iridescenceTexture", out_.iridescence_texture);
+    read(film, "iridescenceIor", 1000, out_.iridescence_ior);
+    read(film, "iridescenceThicknessMinimum", kMostFilm, out_.least_thickness);
+    read(film, "iridescenceThicknessMaximum", kMostFilm, out_.most_thickness);
+    read(film, "iridescenceThicknessTexture", out_.thickness_texture);
   }
 
   void read_sheen(const GltfJson& sheen) {

@@ -147,17 +147,75 @@ class Materials {
       out.roughness_texture = add(in.gloss_texture, ImageChannel::alpha, -in.gloss, 1);
     }
     p.ior = std::clamp(in.ior == 0 ? 4.0f : in.ior, 1.0f, 4.0f);
-    p.specular = 0.5f * in.specular;
-    out.specular_texture = add(in.specular_texture, ImageChannel::alpha);
+    set_specular(in, out);
     p.transmission = in.transmission, p.thin = in.thickness == 0;
     out.transmission_texture = add(in.transmission_texture, ImageChannel::red);
     p.coat = in.coat, p.coat_roughness = in.coat_roughness;
     out.coat_texture = add(in.coat_texture, ImageChannel::red);
     out.coat_roughness_texture = add(in.coat_roughness_texture, ImageChannel::green);
+    if (in.coat > 0) set_coat_normals(in, out);
+    set_anisotropy(in, out);
+    set_iridescence(in, out);
+    if (in.transmission > 0 && !p.thin) p.dispersion = in.dispersion;
     if (in.sheen_color == Color{0, 0, 0}) return;
     p.sheen = 1, p.sheen_color = in.sheen_color, p.sheen_roughness = in.sheen_roughness;
     out.sheen_color_texture = add(in.sheen_color_texture);
     out.sheen_roughness_texture = add(in.sheen_roughness_texture, ImageChannel::alpha);
+  }
+
+  /// A coat without normals of its own is even. One with those of the surface follows it.
+  void set_coat_normals(const GltfMaterial& in, PrincipledMaterial& out) {
+    if (in.coat_normal_texture == in.normal_texture && in.coat_normal_scale == in.normal_scale) return;
+    out.coat_normal_texture = add(in.coat_normal_texture);
+    out.coat_normal_scale = in.coat_normal_scale;
+    out.even_coat = out.coat_normal_texture == kNoId;
+  }
+
+  /// One image has the direction and, in its blue channel, the strength.
+  void set_anisotropy(const GltfMaterial& in, PrincipledMaterial& out) {
+    if (in.anisotropy == 0) return;
+    out.parameters.anisotropy = in.anisotropy;
+    out.anisotropy_rotation = static_cast<float>(in.anisotropy_rotation / kDegree);
+    out.anisotropy_texture = add(in.anisotropy_texture, ImageChannel::blue);
+    out.anisotropy_direction_texture = add(in.anisotropy_texture);
+  }
+
+  /// The image takes the thickness from the least to the greatest; without it is the greatest.
+  void set_iridescence(const GltfMaterial& in, PrincipledMaterial& out) {
+    if (in.iridescence == 0) return;
+    PrincipledParameters& p = out.parameters;
+    p.iridescence = in.iridescence;
+    p.iridescence_ior = std::clamp(in.iridescence_ior, 1.0f, static_cast<float>(kMostIor));
+    out.iridescence_texture = add(in.iridescence_texture, ImageChannel::red);
+    p.iridescence_thickness = in.most_thickness;
+    if (in.thickness_texture.texture == kNoId) return;
+    if (in.most_thickness == 0) p.iridescence_thickness = in.least_thickness;
+    if (p.iridescence_thickness == 0) return;
+    out.iridescence_thickness_texture =
+        add(in.thickness_texture, ImageChannel::green,
+            (in.most_thickness - in.least_thickness) / p.iridescence_thickness,
+            in.least_thickness / p.iridescence_thickness);
+  }
+
+  /// KHR_materials_specular. What an index out of range reflects head-on is left to the colour.
+  void set_specular(const GltfMaterial& in, PrincipledMaterial& out) {
+    PrincipledParameters& p = out.parameters;
+    const auto head_on = [](float ior) { return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1)); };
+    Color color = in.specular_color;
+    if (in.ior == 0 || in.ior > p.ior) color = color * ((in.ior == 0 ? 1 : head_on(in.ior)) / head_on(p.ior));
+    // A grey one is what `specular` says.
+    constexpr float kUsual = 0.5f;
+    const float most = max_component(color);
+    const bool is_grey = color == Color{most, most, most} && kUsual * most <= 1;
+    p.specular = is_grey ? kUsual * most : kUsual;
+    p.specular_color = is_grey ? Color{1, 1, 1} : color;
+    p.specular_weight = in.specular;
+    out.specular_color_texture = add(in.specular_color_texture);
+    out.specular_weight_texture = add(in.specular_texture, ImageChannel::alpha);
+    if (in.transmission > 0 &&
+        (in.specular != 1 || !(in.specular_color == Color{1, 1, 1}) || in.specular_texture.texture != kNoId ||
+         in.specular_color_texture.texture != kNoId))
+      warn(in, "what its glass reflects is what its index of refraction says alone");
   }
 
   /// Adds the texture, whose number is gain * texel + base, and returns its index; kNoId for none.

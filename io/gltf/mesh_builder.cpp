@@ -152,8 +152,8 @@ class Build {
     if (strokes_) return {a.positions, kNoId, kNoId, kNoId, kNoId};
     const auto [first, second] = uv_sets(primitive);
     std::array<std::uint32_t, kRoles> roles{a.positions, a.normals, a.uv_set(first), kNoId, kNoId};
-    const bool bends_normals = primitive.material != kNoId &&
-                               file_.model().materials[primitive.material].normal_texture.texture != kNoId;
+    const bool bends_normals =
+        primitive.material != kNoId && has_tangents(file_.model().materials[primitive.material]);
     if (bends_normals && a.normals != kNoId) roles[kTangents] = a.tangents;
     if (second != kNoId && roles[kUvs] != kNoId) roles[kSecondUvs] = a.uv_set(second);
     return roles;

@@ -169,6 +169,7 @@ struct GltfTextureUse {
   std::uint32_t uvs = 0;  ///< number of the set of texture coordinates
   Vec2f offset{0, 0}, scale{1, 1};
   double rotation = 0;  ///< radians, counter-clockwise in an image
+  bool operator==(const GltfTextureUse&) const = default;
 };
 
 /// Defaults are those of glTF, or leave out what an extension adds.
@@ -184,9 +185,14 @@ struct GltfMaterial {
   float normal_scale = 1;
   bool double_sided = false, unlit = false;
   float ior = 1.5f, transmission = 0, thickness = 0, specular = 1;
+  Color specular_color{1, 1, 1};
   Color attenuation{1, 1, 1};       ///< what is left of white light within
   double attenuation_distance = 0;  ///< after this way; 0: nothing is absorbed
-  float coat = 0, coat_roughness = 0;
+  float anisotropy = 0;
+  double anisotropy_rotation = 0;  ///< radians
+  float iridescence = 0, iridescence_ior = 1.3f, least_thickness = 100, most_thickness = 400;
+  float dispersion = 0;
+  float coat = 0, coat_roughness = 0, coat_normal_scale = 1;
   Color sheen_color{0, 0, 0};
   float sheen_roughness = 0;
   bool is_glossy = false;  ///< roughness is 1 minus gloss times the alpha of `gloss_texture`
@@ -194,6 +200,8 @@ struct GltfMaterial {
   GltfTextureUse gloss_texture;
   GltfTextureUse base_texture, metallic_roughness_texture, normal_texture, emission_texture;
   GltfTextureUse transmission_texture, specular_texture, coat_texture, coat_roughness_texture;
+  GltfTextureUse specular_color_texture, coat_normal_texture, anisotropy_texture;
+  GltfTextureUse iridescence_texture, thickness_texture;
   GltfTextureUse sheen_color_texture, sheen_roughness_texture;
 };
 
@@ -203,8 +211,14 @@ void for_each_texture_use(const GltfMaterial& m, const F& f) {
   for (const GltfTextureUse* use :
        {&m.base_texture, &m.metallic_roughness_texture, &m.gloss_texture, &m.normal_texture,
         &m.emission_texture, &m.transmission_texture, &m.coat_texture, &m.specular_texture,
-        &m.coat_roughness_texture, &m.sheen_color_texture, &m.sheen_roughness_texture})
+        &m.specular_color_texture, &m.coat_roughness_texture, &m.coat_normal_texture, &m.sheen_color_texture,
+        &m.sheen_roughness_texture, &m.anisotropy_texture, &m.iridescence_texture, &m.thickness_texture})
     if (use->texture != kNoId) f(*use);
+}
+
+/// Whether what a material shows depends on the tangents of meshes.
+inline bool has_tangents(const GltfMaterial& m) {
+  return m.normal_texture.texture != kNoId || m.coat_normal_texture.texture != kNoId || m.anisotropy > 0;
 }
 
 /// The sets of texture coordinates by which a material shows textures; kNoId: there is no such one. A mesh

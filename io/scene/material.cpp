@@ -39,6 +39,15 @@ struct PrincipledKeys {
     for (const PrincipledNumber& number : kPrincipledNumbers)
       p.field(number.name, Textured<float>{values.*number.value, principled.*number.texture}, number.range,
               number.meaning);
+    p.field("anisotropy_rotation", principled.anisotropy_rotation, kAngle,
+            "of the direction along which facets are wider, from that of u towards v");
+    p.optional("map_anisotropy", TextureMap{principled.anisotropy_direction_texture},
+               "an image whose red and green are that direction");
+    p.optional("map_coat_normal", TextureMap{principled.coat_normal_texture},
+               "an image of tangent-space normals of the coat");
+    p.field("coat_normal_scale", principled.coat_normal_scale, "multiplies the tilt of `map_coat_normal`");
+    p.field("even_coat", principled.even_coat, "`map_bump` and `map_normal` do not bend the coat");
+    p.not_both("map_coat_normal", "even_coat", "expected 'map_coat_normal' or 'even_coat', not both");
     for (const char* key : {"eta", "k"})
       p.not_both("metal", key, "expected 'metal' or 'eta' and 'k', not both");
   }
@@ -56,6 +65,16 @@ std::optional<Conductor> conductor_of(const Fields& fields, const YamlNode& node
   return keys.measured;
 }
 
+/// Throws Error if the normals are those of a pattern or an attribute.
+void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, std::uint32_t texture) {
+  if (texture == kNoId) return;
+  const Texture& t = load.scene.textures[texture];
+  if (!t.pattern && t.attribute.empty()) return;
+  const std::string what = t.pattern ? "a pattern" : "an attribute";
+  throw Error(node->where(), what + " holds no normals; expected an image, or 'map_bump', which takes " +
+                                 what + " as heights");
+}
+
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, PrincipledKeys& keys) {
   const Fields fields = read_described(load, node, keys.kMap, keys);
   Material& m = keys.m;
@@ -69,7 +88,18 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, PrincipledK
     // What shows no indices of refraction shows this.
     if (!fields["base_color"]) p.base_color = m.color = head_on_color(*p.conductor);
   }
-  m.principled = keys.principled;
+  const PrincipledMaterial& made = keys.principled;
+  refuse_normal_pattern(load, fields["map_coat_normal"], made.coat_normal_texture);
+  load.warn_if_unused(fields, "coat_normal_scale", made.coat_normal_texture == kNoId,
+                      "there is no 'map_coat_normal'");
+  refuse_normal_pattern(load, fields["map_anisotropy"], made.anisotropy_direction_texture);
+  for (const char* key : {"map_anisotropy", "anisotropy_rotation"})
+    load.warn_if_unused(fields, key, made.parameters.anisotropy == 0, "'anisotropy' is 0");
+  for (const char* key : {"iridescence_ior", "iridescence_thickness"})
+    load.warn_if_unused(fields, key, made.parameters.iridescence == 0, "'iridescence' is 0");
+  load.warn_if_unused(fields, "dispersion", made.parameters.transmission == 0 || made.parameters.thin,
+                      "only glass that is no thin wall bends light");
+  m.principled = made;
   resemble_principled(m);
 }
 
@@ -167,16 +197,6 @@ void finish_roughness(const Fields& fields, const PrincipledMaterial& rough, Mat
   principled.metallic_texture = rough.metallic_texture;
 }
 
-/// Throws Error if the normals are those of a pattern or an attribute.
-void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Material& m) {
-  if (m.normal_texture == kNoId) return;
-  const Texture& t = load.scene.textures[m.normal_texture];
-  if (!t.pattern && t.attribute.empty()) return;
-  const std::string what = t.pattern ? "a pattern" : "an attribute";
-  throw Error(node->where(), what + " holds no normals; expected an image, or 'map_bump', which takes " +
-                                 what + " as heights");
-}
-
 /// The medium that leaves `attenuation_color` of white light after `attenuation_distance`, as in glTF.
 std::uint32_t add_attenuation(SceneLoad& load, const Fields& fields, const CommonKeys& keys) {
   const YamlNode *color = fields["attenuation_color"], *distance = fields["attenuation_distance"];
@@ -237,7 +257,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   const Fields fields = read_described(load, node, keys.kMap, keys);
   if (fields["filter"]) m.filter = keys.phong.filter;
   finish_roughness(fields, keys.phong.rough, m);
-  refuse_normal_pattern(load, fields["map_normal"], m);
+  refuse_normal_pattern(load, fields["map_normal"], m.normal_texture);
   if (fields["principled"]) refuse_phong_keys(node, keys.phong);
   finish_interior(load, fields, node, keys.common);
   warn_of_unused_keys(load, fields, m);

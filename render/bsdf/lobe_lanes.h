@@ -49,11 +49,14 @@ struct BsdfSamples {
   M transmitted;
 };
 
+template <class D>
+OKTETT_INLINE Vec3<D> above_horizon(const Vec3<D>& w) {
+  return unit_lanes(Vec3<D>{w.x, w.y, max(D(1e-6), w.z)});
+}
 /// The direction to a viewer, of unit length in double and not below or along the surface.
 template <class D>
 OKTETT_INLINE Vec3<D> direction_above(const Vec3<FloatsOf<D>>& wo) {
-  const Vec3<D> w = to_double(wo);
-  return unit_lanes(Vec3<D>{w.x, w.y, max(D(1e-6), w.z)});
+  return above_horizon(to_double(wo));
 }
 
 /// A direction above the surface with density cos / pi, from a point of the unit square.
@@ -114,6 +117,12 @@ class ShadingFrame {
   /// Both normals point to the side of the viewer.
   OKTETT_INLINE ShadingFrame(const Vec3<F>& ns, const Vec3<F>& ng) : z_(ns), ng_(ng) {
     basis_lanes(z_, x_, y_);
+  }
+
+  /// Turns x towards y by the angle of this cosine and sine.
+  void turn(const Vec2f& angle) {
+    const Vec3<F> x = x_;
+    x_ = x_ * F(angle.x) + y_ * F(angle.y), y_ = y_ * F(angle.x) - x * F(angle.y);
   }
 
   OKTETT_INLINE Vec3<F> to_local(const Vec3<F>& v) const {

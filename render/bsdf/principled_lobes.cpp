@@ -3,7 +3,7 @@
 namespace oktett {
 
 PrincipledSurface::PrincipledSurface(const PrincipledParameters& p, bool is_front)
-    : SurfaceOf(p, PrincipledBase(p, is_front)) {}
+    : SurfaceOf(p, PrincipledBase(p, is_front)), stretch(p.stretch) {}
 
 /// Calls act(a type of a lobe, its surface) for the lobes of a list.
 template <template <class> class... L, class Act>

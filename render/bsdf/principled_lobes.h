@@ -67,6 +67,8 @@ struct PrincipledSurface : SurfaceOf<PrincipledList> {
   bool only_delta() const;
   /// Whether light may pass to the other side.
   bool transmits() const;
+
+  Vec2f stretch{1, 0};  ///< by which its frame is turned, see PrincipledParameters
 };
 
 /// In lanes of doubles D, for viewers of the same surface.
@@ -79,7 +81,7 @@ class PrincipledLobes {
 
   PrincipledLobes(const PrincipledSurface& surface, const Vec3<F>& wo)
       : s_(&surface), view_{&surface, direction_above<D>(wo), {}} {
-    view_.facets = SeenFacets<D>(view_.wo, base().alpha);
+    view_.facets = SeenFacets<D>(view_.wo, base().facets);
     ArrivingLight<D> arriving;
     each(PrincipledList{}, lobes_,
          [&](auto& lobe, const auto& s, int first) { lobe.set(s, view_, arriving, &choice_[first]); });
@@ -141,9 +143,10 @@ class PrincipledLobes {
   bool transmits() const { return s_->transmits(); }
 
   /// The part of the viewer's light that its glass, which must be smooth, lets pass, colour left out.
-  D passing_glass() const {
+  Vec3<D> passing_glass() const {
     const GlassSurface& glass = *s_;
-    return GlassLobe<D>::is_there(glass, base()) ? of<GlassLobe<D>>(lobes_).passing(glass, view_) : D(0.0);
+    return GlassLobe<D>::is_there(glass, base()) ? of<GlassLobe<D>>(lobes_).passing(glass, view_)
+                                                 : grey(D(0.0));
   }
 
   /// After the surface has been copied to another place.
@@ -205,8 +208,14 @@ class PrincipledLobes {
 
   /// Directions that leave the facets of the lobes that were chosen.
   OKTETT_INLINE void sample_facets(LobeSampling<D>& out) const {
-    const D bound = select(out.all_facets, D(1.0), reflecting_bound(view_.wo, out.alpha));
-    out.normal = ggx_normal(view_.wo, out.alpha, bound, out.x, out.y);
+    const D one(1.0);
+    if (base().facets.stretched()) {
+      const D bound = select(out.all_facets, one, reflecting_bound(view_.wo, out.alpha_x, out.alpha_y));
+      out.normal = ggx_normal(view_.wo, out.alpha_x, out.alpha_y, bound, out.x, out.y);
+    } else {
+      const D bound = select(out.all_facets, one, reflecting_bound(view_.wo, out.alpha_x));
+      out.normal = ggx_normal(view_.wo, out.alpha_x, bound, out.x, out.y);
+    }
     out.cosine = dot_lanes(view_.wo, out.normal);
     out.reflected = out.normal * (D(2.0) * out.cosine) - view_.wo;
     out.mirrored = out.facets;

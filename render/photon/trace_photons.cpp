@@ -8,6 +8,7 @@
 
 #include "accel/accel.h"
 #include "core/parallel.h"
+#include "render/dispersion.h"
 #include "render/light/emitter.h"
 #include "render/path_surface.h"
 #include "render/shading_point.h"
@@ -260,7 +261,11 @@ class PhotonChunk {
   }
 
   /// Solids count as in shade_path.
-  void arrive(std::size_t i, const ShadingPoint& p) {
+  void arrive(std::size_t i, ShadingPoint p) {
+    if (p.principled && disperses(*p.principled)) {
+      const float u = choices_.channel(queue_.number[i], level_);
+      energy_.absorbed += attenuate(i, disperse(p, queue_.power[i], u));
+    }
     if (!context_.tracks_dielectrics) return meet(i, p, nullptr, nullptr);
     const DielectricStack& before = queue_.dielectrics[i];
     const Boundary boundary =
@@ -268,12 +273,11 @@ class PhotonChunk {
     if (boundary.hidden)
       return push(i, p, p.direction, queue_.power[i], queue_.index_square[i], queue_.bounces[i],
                   &boundary.behind);
-    ShadingPoint between = p;
     if (boundary.ior) {
-      between.ior = *boundary.ior;
-      if (between.principled) between.principled->ior = *boundary.ior;
+      p.ior = *boundary.ior;
+      if (p.principled) p.principled->ior = *boundary.ior;
     }
-    meet(i, between, &before, &boundary.behind);
+    meet(i, p, &before, &boundary.behind);
   }
 
   /// Keeps the photon at a surface and sends it on. `before` and `behind`: the solids on both sides.

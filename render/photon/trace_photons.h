@@ -40,6 +40,10 @@ class PhotonChoices {
   float number(std::uint32_t photon, PhotonDecision decision, unsigned level) const {
     return sobol_number(photon, sequence_key(key_, dimension(decision, level)));
   }
+  /// By which it keeps one colour channel at its surface number `level`.
+  float channel(std::uint32_t photon, unsigned level) const {
+    return sobol_number(photon, sequence_key(key_, kDispersion + level));
+  }
   /// For what media take of a photon before its surface number `level`.
   TrackingNumbers in_media(std::uint32_t photon, unsigned level) const {
     return {sequence_key(key_, kInMedia + level), photon};
@@ -51,7 +55,7 @@ class PhotonChoices {
 
  private:
   /// Beyond the dimensions of all decisions.
-  static constexpr std::uint32_t kInMedia = 1u << 20;
+  static constexpr std::uint32_t kInMedia = 1u << 20, kDispersion = 1u << 21;
 
   static std::uint32_t dimension(PhotonDecision decision, unsigned level) {
     constexpr auto per_level = static_cast<std::uint32_t>(PhotonDecision::count) - 3;

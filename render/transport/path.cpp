@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "render/dispersion.h"
 #include "render/path_surface.h"
 #include "render/photon/caustics.h"
 #include "render/sampling/owen_sobol.h"
@@ -221,6 +222,13 @@ bool meet_alone(const RenderContext& context, Wavefront& wavefront, const RayHis
   const std::size_t k = hit.entry, ray = c.ray[k];
   hit.point = shading_point(context, wavefront.rays.rays[ray], wavefront.hits[ray], history, found);
   ShadingPoint& p = hit.point;
+  if (p.principled && disperses(*p.principled)) {
+    const std::uint64_t key = sequence_key(c.key[k], dispersion_dimension(wavefront.level));
+    const Color before = wavefront.rays.throughput[ray];
+    const Color left = before * disperse(p, before, sobol_number(c.number[k], key));
+    wavefront.rays.throughput.set(ray, left);
+    InteractionBlock::put(c.throughput, k, left);
+  }
   if (context.tracks_dielectrics) {
     hit.boundary = boundary_at(*context.world, wavefront.paths.dielectrics[ray], p.surface, p.front,
                                index_of_refraction(p));

@@ -27,7 +27,9 @@ class SurfaceScattering {
   /// Of rays along `direction`, with the normals of ShadingPoint.
   OKTETT_INLINE SurfaceScattering(const Surface& surface, bool transmits, const Vec3<F>& direction,
                                   const Vec3<F>& ng, const Vec3<F>& ns)
-      : frame_(ns, ng), transmits_(transmits), lobes_(surface, frame_.to_local(-direction)) {}
+      : frame_(frame_of(surface, ns, ng)),
+        transmits_(transmits),
+        lobes_(surface, frame_.to_local(-direction)) {}
 
   OKTETT_INLINE Vec3<F> to_local(const Vec3<F>& l) const { return frame_.to_local(l); }
   /// The lanes in which light from the unit vectors `l` may be scattered.
@@ -43,6 +45,14 @@ class SurfaceScattering {
   }
 
  private:
+  static OKTETT_INLINE ShadingFrame<D> frame_of(const Surface& surface, const Vec3<F>& ns,
+                                                const Vec3<F>& ng) {
+    ShadingFrame<D> frame(ns, ng);
+    if constexpr (requires { surface.stretch; })
+      if (surface.stretch.y != 0 || surface.stretch.x != 1) frame.turn(surface.stretch);
+    return frame;
+  }
+
   ShadingFrame<D> frame_;
   bool transmits_;
   Lobes<D> lobes_;

@@ -40,4 +40,7 @@ constexpr std::uint32_t dimension(MediumDecision decision, unsigned level) {
          level * static_cast<std::uint32_t>(MediumDecision::count);
 }
 
+/// The dimension of the choice of a colour channel, likewise of its own: few materials disperse light.
+constexpr std::uint32_t dispersion_dimension(unsigned level) { return (1u << 21) + level; }
+
 }  // namespace oktett

@@ -152,5 +152,105 @@ TEST_F(GlbFiles, GlassKeepsWhatItAbsorbs) {
     EXPECT_NEAR(after.media.at(0).absorption[k], before.media.at(0).absorption[k], 1e-6);
 }
 
+/// Materials that show an image with these extensions, as a GLB file, and what is written of them.
+class Extensions : public GlbFiles {
+ protected:
+  void read(const std::string& material, const std::string& attributes = "") const {
+    GltfWriter out;
+    out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    out.array(std::vector<float>{0, 0, 1, 0, 0, 1}, kFloat, "VEC2", 2);
+    const std::string image = "data:image/png;base64," + base64("\x89PNG\r\n\x1a\nno more");
+    files.write("in.glb", out.glb("\"images\":[{\"uri\":\"" + image +
+                                  "\"}],\"textures\":[{\"source\":0}],\"materials\":[" + material + "]," +
+                                  one_node("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1" + attributes +
+                                           "},\"material\":0}")));
+  }
+  /// The extension as it is written, whose parameters come back with all bits and without losses.
+  json written_again(const std::string& extension, const std::string& values) const {
+    read("{\"extensions\":{\"" + extension + "\":" + values + "}}");
+    const Glb glb = written("in.glb");
+    EXPECT_EQ(losses_, Losses{});
+    const MeshFile before = load("in.glb"), after = load("a.glb");
+    EXPECT_EQ(after.materials.at(0).principled->parameters, before.materials.at(0).principled->parameters);
+    EXPECT_NE(glb.file["extensionsUsed"].dump().find(extension), std::string::npos);
+    return glb.file["materials"][0]["extensions"][extension];
+  }
+};
+
+TEST_F(Extensions, ReflectionsKeepColourAndWeight) {
+  const json all = written_again(
+      "KHR_materials_specular",
+      "{\"specularFactor\":0.75,\"specularTexture\":{\"index\":0},\"specularColorFactor\":[0.5,2,0.25],"
+      "\"specularColorTexture\":{\"index\":0}}");
+  EXPECT_EQ(all["specularFactor"], 0.75);
+  EXPECT_EQ(all["specularColorFactor"], json::array({0.5, 2, 0.25}));
+  EXPECT_TRUE(all["specularTexture"].contains("index"));
+  EXPECT_TRUE(all["specularColorTexture"].contains("index"));
+  const json grey = written_again("KHR_materials_specular", "{\"specularColorFactor\":[0.5,0.5,0.5]}");
+  EXPECT_EQ(grey["specularColorFactor"], json::array({0.5, 0.5, 0.5}));
+}
+
+TEST_F(Extensions, AnisotropyKeepsItsImage) {
+  const json plain = written_again("KHR_materials_anisotropy", "{\"anisotropyStrength\":0.5}");
+  EXPECT_EQ(plain, (json{{"anisotropyStrength", 0.5}}));
+  const json all = written_again(
+      "KHR_materials_anisotropy",
+      "{\"anisotropyStrength\":0.25,\"anisotropyRotation\":0.75,\"anisotropyTexture\":{\"index\":0}}");
+  EXPECT_NEAR(all["anisotropyRotation"].get<double>(), 0.75, 1e-6);
+  EXPECT_TRUE(all["anisotropyTexture"].contains("index"));
+  EXPECT_NE(load("a.glb").materials.at(0).principled->anisotropy_texture, kNoId);
+}
+
+TEST_F(Extensions, ThinFilmsKeepTheirThickness) {
+  const json plain = written_again("KHR_materials_iridescence",
+                                   "{\"iridescenceFactor\":0.5,\"iridescenceThicknessMaximum\":256}");
+  EXPECT_EQ(plain["iridescenceThicknessMaximum"], 256);
+  const json all = written_again("KHR_materials_iridescence",
+                                 "{\"iridescenceFactor\":0.5,\"iridescenceIor\":1.75,\"iridescenceTexture\":"
+                                 "{\"index\":0},\"iridescenceThicknessTexture\":{\"index\":0},"
+                                 "\"iridescenceThicknessMinimum\":128,\"iridescenceThicknessMaximum\":512}");
+  EXPECT_EQ(all["iridescenceIor"], 1.75);
+  EXPECT_TRUE(all["iridescenceTexture"].contains("index"));
+  EXPECT_TRUE(all["iridescenceThicknessTexture"].contains("index"));
+  EXPECT_EQ(all["iridescenceThicknessMinimum"], 128);
+  EXPECT_EQ(all["iridescenceThicknessMaximum"], 512);
+  const Texture a = load("in.glb").textures.at(1), b = load("a.glb").textures.at(1);
+  EXPECT_EQ(a.gain, b.gain);
+  EXPECT_EQ(a.base, b.base);
+}
+
+TEST_F(Extensions, GlassKeepsItsDispersion) {
+  read(
+      "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":"
+      "{\"thicknessFactor\":1},\"KHR_materials_dispersion\":{\"dispersion\":0.5}}}");
+  const Glb glb = written("in.glb");
+  EXPECT_EQ(losses_, Losses{});
+  EXPECT_EQ(glb.file["materials"][0]["extensions"]["KHR_materials_dispersion"]["dispersion"], 0.5);
+  EXPECT_EQ(load("a.glb").materials.at(0).principled->parameters.dispersion, 0.5f);
+}
+
+TEST_F(Extensions, CoatsKeepTheirNormals) {
+  const std::string coat = "\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1";
+  const std::string own = ",\"clearcoatNormalTexture\":{\"index\":0,\"scale\":0.5}",
+                    base = ",\"normalTexture\":{\"index\":0,\"scale\":0.5}";
+  for (const std::string& normals : {std::string(), own})
+    for (const std::string& below : {std::string(), base}) {
+      read("{" + coat + normals + "}}" + below + "}");
+      const Glb glb = written("in.glb");
+      EXPECT_EQ(losses_, Losses{});
+      const json& written = glb.file["materials"][0]["extensions"]["KHR_materials_clearcoat"];
+      EXPECT_EQ(written.contains("clearcoatNormalTexture"), !normals.empty());
+      if (!normals.empty()) {
+        EXPECT_EQ(written["clearcoatNormalTexture"]["scale"], 0.5);
+      }
+      const MeshFile before = load("in.glb"), after = load("a.glb");
+      const PrincipledMaterial &a = *before.materials.at(0).principled,
+                               &b = *after.materials.at(0).principled;
+      EXPECT_EQ(a.coat_normal_texture == kNoId, b.coat_normal_texture == kNoId);
+      EXPECT_EQ(a.coat_normal_scale, b.coat_normal_scale);
+      EXPECT_EQ(a.even_coat, b.even_coat);
+    }
+}
+
 }  // namespace
 }  // namespace oktett::test::glb_test

@@ -161,6 +161,12 @@ TEST(GltfError, FactorsOfMaterialsHaveLimits) {
                              {"specular", "specularFactor", 1},
                              {"clearcoat", "clearcoatFactor", 1},
                              {"clearcoat", "clearcoatRoughnessFactor", 1},
+                             {"anisotropy", "anisotropyStrength", 1},
+                             {"iridescence", "iridescenceFactor", 1},
+                             {"iridescence", "iridescenceIor", 1000},
+                             {"iridescence", "iridescenceThicknessMinimum", 1e5},
+                             {"iridescence", "iridescenceThicknessMaximum", 1e5},
+                             {"dispersion", "dispersion", 20},
                              {"sheen", "sheenRoughnessFactor", 1}})
     factors.push_back({extension(e.name, e.key), "}}", e.most, e.key});
   for (const auto& [before, after] :
@@ -168,6 +174,7 @@ TEST(GltfError, FactorsOfMaterialsHaveLimits) {
     factors.push_back({pbr("baseColorFactor") + "[" + before, after + ",1]}", 1, ""});
     factors.push_back({"\"emissiveFactor\":[" + before, after + "]", 1e30, ""});
     factors.push_back({extension("sheen", "sheenColorFactor") + "[" + before, after + "]}}", 1, ""});
+    factors.push_back({extension("specular", "specularColorFactor") + "[" + before, after + "]}}", 1e30, ""});
   }
   for (const Factor& factor : factors) {
     const std::string material = factor.before + "#" + factor.after;

@@ -309,7 +309,8 @@ TEST(GltfScene, TexturesLieByTwoSetsOfCoordinates) {
   // One set alone is the first one of the mesh, whichever texture shows it.
   for (const std::string extension :
        {"KHR_materials_sheen\":{\"sheenColorFactor\":[1,1,1],\"sheenColorTexture",
-        "KHR_materials_specular\":{\"specularTexture", "KHR_materials_clearcoat\":{\"clearcoatTexture",
+        "KHR_materials_specular\":{\"specularTexture", "KHR_materials_specular\":{\"specularColorTexture",
+        "KHR_materials_clearcoat\":{\"clearcoatTexture",
         "KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatRoughnessTexture",
         "KHR_materials_transmission\":{\"transmissionTexture"}) {
     const MeshFile one = with_material(files, "{\"extensions\":{\"" + extension + "\":" + use("1") + "}}}");
@@ -345,6 +346,112 @@ TEST(GltfScene, NormalTexturesHaveScaleAndTangents) {
   // As one mesh they are moved, and a mirror changes the side.
   const MeshFile moved = read(",\"scale\":[-2,1,1]");
   EXPECT_EQ(moved.mesh.tangents[0], (std::array<float, 4>{-2, 0, 0, 1}));
+}
+
+TEST(GltfScene, CoatsHaveNormalsOfTheirOwn) {
+  const GltfFiles files;
+  const auto read = [&](const std::string& coat, const std::string& base = "") {
+    return with_material(files, "{\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1" + coat +
+                                    "}}" + base + "}");
+  };
+  const std::string own = ",\"clearcoatNormalTexture\":{\"index\":0,\"scale\":0.5}",
+                    base = ",\"normalTexture\":{\"index\":0,\"scale\":0.5}";
+  const MeshFile with = read(own);
+  EXPECT_TRUE(with.warnings.empty());
+  const PrincipledMaterial& m = *with.materials.at(0).principled;
+  EXPECT_NE(m.coat_normal_texture, kNoId);
+  EXPECT_EQ(m.coat_normal_scale, 0.5f);
+  EXPECT_FALSE(m.even_coat);
+  // The normals of the surface are not those of the coat, unless it names the same.
+  const PrincipledMaterial without = *read("", base).materials.at(0).principled;
+  EXPECT_EQ(without.coat_normal_texture, kNoId);
+  EXPECT_TRUE(without.even_coat);
+  const PrincipledMaterial both = *read(own, base).materials.at(0).principled;
+  EXPECT_EQ(both.coat_normal_texture, kNoId);
+  EXPECT_FALSE(both.even_coat);
+}
+
+TEST(GltfScene, AnisotropyHasDirectionAndStrengthInOneImage) {
+  const GltfFiles files;
+  const MeshFile file = with_material(
+      files,
+      "{\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.75,\"anisotropyRotation\":"
+      "1.5707963267948966,\"anisotropyTexture\":{\"index\":0}}}}");
+  EXPECT_TRUE(file.warnings.empty());
+  const PrincipledMaterial& m = *file.materials.at(0).principled;
+  EXPECT_EQ(m.parameters.anisotropy, 0.75f);
+  EXPECT_NEAR(m.anisotropy_rotation, 90, 1e-5);
+  EXPECT_EQ(file.textures.at(m.anisotropy_texture).channel, ImageChannel::blue);
+  EXPECT_NE(m.anisotropy_direction_texture, kNoId);
+}
+
+TEST(GltfScene, ThinFilmsAreAsThickAsTheImageSays) {
+  const GltfFiles files;
+  const auto read = [&](const std::string& film) {
+    return with_material(
+        files, "{\"extensions\":{\"KHR_materials_iridescence\":{\"iridescenceFactor\":0.5" + film + "}}}");
+  };
+  const MeshFile plain = read("");
+  EXPECT_TRUE(plain.warnings.empty());
+  const PrincipledParameters& p = plain.materials.at(0).principled->parameters;
+  EXPECT_EQ(p.iridescence, 0.5f);
+  EXPECT_EQ(p.iridescence_ior, 1.3f);
+  EXPECT_EQ(p.iridescence_thickness, 400);
+  // From the least to the greatest thickness, which may be the lesser one.
+  for (const auto& [least, most] : {std::pair{150.0, 600.0}, {600.0, 150.0}, {300.0, 0.0}}) {
+    const MeshFile file = read(
+        ",\"iridescenceIor\":1.5,\"iridescenceTexture\":{\"index\":0},\"iridescenceThicknessTexture\":"
+        "{\"index\":0},\"iridescenceThicknessMinimum\":" +
+        std::to_string(least) + ",\"iridescenceThicknessMaximum\":" + std::to_string(most));
+    const PrincipledMaterial& m = *file.materials.at(0).principled;
+    EXPECT_EQ(m.parameters.iridescence_ior, 1.5f);
+    EXPECT_EQ(file.textures.at(m.iridescence_texture).channel, ImageChannel::red);
+    const Texture& t = file.textures.at(m.iridescence_thickness_texture);
+    EXPECT_EQ(t.channel, ImageChannel::green);
+    for (const double texel : {0.0, 0.25, 1.0})
+      EXPECT_NEAR(double{m.parameters.iridescence_thickness} * (double{t.gain} * texel + double{t.base}),
+                  least + (most - least) * texel, 1e-3);
+  }
+}
+
+TEST(GltfScene, GlassDispersesIfItIsFilled) {
+  const GltfFiles files;
+  const auto dispersion = [&](const std::string& more) {
+    return with_material(files,
+                         "{\"extensions\":{\"KHR_materials_dispersion\":{\"dispersion\":0.5}" + more + "}}")
+        .materials.at(0)
+        .principled->parameters.dispersion;
+  };
+  const std::string glass = ",\"KHR_materials_transmission\":{\"transmissionFactor\":1}";
+  EXPECT_EQ(dispersion(glass + ",\"KHR_materials_volume\":{\"thicknessFactor\":1}"), 0.5f);
+  EXPECT_EQ(dispersion(glass), 0);
+  EXPECT_EQ(dispersion(""), 0);
+}
+
+TEST(GltfScene, KtxImagesAreReplacedOrNamed) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.array(std::vector<float>{0, 0, 1, 0, 0, 1}, kFloat, "VEC2", 2);
+  const auto read = [&](const std::string& texture) {
+    return files.load(out.glb(
+        "\"extensionsUsed\":[\"KHR_texture_basisu\"],\"extensionsRequired\":[\"KHR_texture_basisu\"],"
+        "\"images\":[{\"uri\":\"a.png\"},{\"uri\":\"a.ktx2\",\"mimeType\":\"image/ktx2\"}],\"textures\":["
+        "{\"source\":0}," +
+        texture + "],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}}]," +
+        one_node("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"material\":0}")));
+  };
+  const std::string packed = "\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}";
+  const MeshFile other = read("{\"source\":0," + packed + "}");
+  EXPECT_EQ(other.textures.at(other.materials.at(0).color_texture).path, files.files.dir.file("a.png"));
+  EXPECT_EQ(files.files.as_text(other.warnings),
+            (std::vector<std::string>{
+                "a.glb: warning: textures[1]: its KTX2 image is not read; the other one that it names is"}));
+  const MeshFile white = read("{" + packed + "}");
+  EXPECT_EQ(white.materials.at(0).color_texture, kNoId);
+  EXPECT_EQ(
+      files.files.as_text(white.warnings),
+      (std::vector<std::string>{"a.glb: warning: textures[1]: its KTX2 image is not read; white instead"}));
 }
 
 TEST(GltfScene, MasksKeepWhatIsEqualToTheCutoff) {
@@ -401,6 +508,52 @@ TEST(GltfScene, SpecularAndGlossBecomeMetalOrPlastic) {
   EXPECT_EQ(t.channel, ImageChannel::alpha);
   EXPECT_EQ(t.gain, -0.5f);
   EXPECT_EQ(t.base, 1);
+  // Its colours are what is reflected head-on, where plastic reflects 0.04.
+  const PrincipledMaterial& colored = *textured.materials.at(0).principled;
+  EXPECT_EQ(textured.textures.at(colored.specular_color_texture).channel, ImageChannel::red);
+  EXPECT_NEAR(colored.parameters.specular_color.x, 25, 1e-4);
+  EXPECT_EQ(colored.parameters.specular, 0.5f);
+  EXPECT_TRUE(textured.warnings.empty());
+}
+
+TEST(GltfScene, ReflectionsHaveColourAndWeight) {
+  const GltfFiles files;
+  const auto read = [&](const std::string& extensions) {
+    return with_material(files, "{\"extensions\":{" + extensions + "}}");
+  };
+  const MeshFile file = read(
+      "\"KHR_materials_specular\":{\"specularFactor\":0.75,\"specularTexture\":{\"index\":0},"
+      "\"specularColorFactor\":[0.5,2,0],\"specularColorTexture\":{\"index\":0}}");
+  EXPECT_TRUE(file.warnings.empty());
+  const PrincipledMaterial& m = *file.materials.at(0).principled;
+  EXPECT_EQ(m.parameters.specular, 0.5f);
+  EXPECT_EQ(m.parameters.specular_weight, 0.75f);
+  EXPECT_EQ(m.parameters.specular_color, (Color{0.5f, 2, 0}));
+  EXPECT_EQ(file.textures.at(m.specular_weight_texture).channel, ImageChannel::alpha);
+  EXPECT_EQ(file.textures.at(m.specular_color_texture).color_space, TextureColors::srgb);
+  // A grey colour is `specular`.
+  const auto parameters = [&](const std::string& extensions) {
+    return read(extensions).materials.at(0).principled->parameters;
+  };
+  const PrincipledParameters grey =
+      parameters("\"KHR_materials_specular\":{\"specularColorFactor\":[1.5,1.5,1.5]}");
+  EXPECT_EQ(grey.specular, 0.75f);
+  EXPECT_EQ(grey.specular_color, (Color{1, 1, 1}));
+  // The index 0 reflects all, so the colour alone is what is reflected head-on; 1000 nearly does.
+  for (const char* const ior : {"0", "1000"}) {
+    const PrincipledParameters metal =
+        parameters(std::string("\"KHR_materials_ior\":{\"ior\":") + ior +
+                   "},\"KHR_materials_specular\":{\"specularColorFactor\":[0.9,0.5,0.25]}");
+    const float most = (metal.ior - 1) * (metal.ior - 1) / ((metal.ior + 1) * (metal.ior + 1));
+    EXPECT_NEAR(metal.specular_color.x * most, 0.9f, 4e-3) << ior;
+    EXPECT_NEAR(metal.specular_color.z * most, 0.25f, 2e-3) << ior;
+  }
+  const std::string glass = "\"KHR_materials_transmission\":{\"transmissionFactor\":1}";
+  EXPECT_TRUE(read(glass + ",\"KHR_materials_specular\":{\"specularFactor\":1}").warnings.empty());
+  EXPECT_EQ(
+      files.files.as_text(read(glass + ",\"KHR_materials_specular\":{\"specularFactor\":0.5}").warnings),
+      (std::vector<std::string>{"a.glb: warning: material '': what its glass reflects is what its index of "
+                                "refraction says alone"}));
 }
 
 TEST(GltfScene, VariantsChooseMaterials) {

@@ -144,7 +144,10 @@ TEST(SceneMaterial, ReadsPrincipledOnes) {
       "    principled: {base_color: [0.1, 0.2, 0.3], metallic: 0.25, roughness: {file: a.png, gain: 0.5},\n"
       "      specular: 0.75, ior: 1.25, transmission: 0.5, thin: true, coat: 1, coat_roughness: 0.125,\n"
       "      coat_ior: 1.75, sheen: 0.375, sheen_color: {file: b.png}, sheen_roughness: 0.625,\n"
-      "      eta: [1, 2, 3], k: [4, 5, 6]}\n"
+      "      specular_color: [0.5, 2, 0], specular_weight: 0.375,\n"
+      "      anisotropy: 0.25, anisotropy_rotation: 30, map_anisotropy: a.png, iridescence: {file: a.png},\n"
+      "      iridescence_ior: 1.75, iridescence_thickness: 300,\n"
+      "      map_coat_normal: b.png, coat_normal_scale: 0.5, eta: [1, 2, 3], k: [4, 5, 6]}\n"
       "    emission: [1, 1, 0]\n"
       "    emits: front\n");
   const Material& m = scene.materials.at(0);
@@ -156,6 +159,18 @@ TEST(SceneMaterial, ReadsPrincipledOnes) {
   EXPECT_EQ(scene.textures.at(m.principled->roughness_texture).path, files.dir.file("a.png"));
   EXPECT_EQ(scene.textures.at(m.principled->roughness_texture).gain, 0.5f);
   EXPECT_EQ(p.specular, 0.75f);
+  EXPECT_EQ(p.specular_color, (Color{0.5f, 2, 0}));
+  EXPECT_EQ(p.specular_weight, 0.375f);
+  EXPECT_EQ(scene.textures.at(m.principled->coat_normal_texture).path, files.dir.file("b.png"));
+  EXPECT_EQ(m.principled->coat_normal_scale, 0.5f);
+  EXPECT_FALSE(m.principled->even_coat);
+  EXPECT_EQ(p.anisotropy, 0.25f);
+  EXPECT_EQ(m.principled->anisotropy_rotation, 30);
+  EXPECT_EQ(scene.textures.at(m.principled->anisotropy_direction_texture).path, files.dir.file("a.png"));
+  EXPECT_EQ(scene.textures.at(m.principled->iridescence_texture).path, files.dir.file("a.png"));
+  EXPECT_EQ(p.iridescence, 1);
+  EXPECT_EQ(p.iridescence_ior, 1.75f);
+  EXPECT_EQ(p.iridescence_thickness, 300);
   EXPECT_EQ(p.ior, 1.25f);
   EXPECT_EQ(p.transmission, 0.5f);
   EXPECT_TRUE(p.thin);

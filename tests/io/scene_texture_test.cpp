@@ -147,6 +147,8 @@ TEST_F(SceneTexture, ErrorsSayWhatIsWrong) {
   expect("opacity: 1.5", "from 0 to 1");
   expect("principled: {ior: 5}", "from 0.25 to 4");
   expect_starts(error("map_normal: {noise: }"), "scene.yaml:2:29: a pattern holds no normals");
+  expect_starts(error("principled: {map_coat_normal: {noise: }}"),
+                "scene.yaml:2:47: a pattern holds no normals");
   expect("map_normal: {noise: }", "'map_bump'");
   // A texture cannot hold itself: an alias inside its own anchor is no YAML.
   expect("color: &a {marble: {colors: *a}}", "");

@@ -50,6 +50,7 @@ TEST(BsdfReciprocity, BaseIsReciprocal) {
     p.ior = kIor[n % std::size(kIor)];
     p.thin = n % 5 == 0;
     if (n % 7 == 0) p.conductor.emplace();
+    if (n % 3 == 0) p.specular_color = {0.2f, 3, 9}, p.specular_weight = 0.7f;
     const bool front = n % 2 == 0;
     const Color there = principled_bsdf(p, a, front).evaluate(b).value / b.z;
     const Color back = principled_bsdf(p, b, front).evaluate(a).value / a.z;

@@ -86,14 +86,15 @@ constexpr double kCosine[] = {0.01, 0.05, 0.2, 0.5, 0.7, 0.9, 0.999, 1};
 constexpr float kIor[] = {0.4f, 0.7f, 0.9f, 1.05f, 1.33f, 1.5f, 2.4f};
 constexpr float kIorNearOne[] = {0.99f, 0.995f, 0.999f, 1, 1.001f, 1.005f, 1.01f, 1.02f, 1.03f};
 constexpr float kWeight[] = {0, 0, 0.5f, 1};
+constexpr float kScale[] = {0.5f, 1, 6, 40};
 constexpr Color kColor[] = {{1, 1, 1}, {0.8f, 0.3f, 0.1f}, {0, 0, 0}, {0.1f, 0.9f, 0.5f}};
 
 class PrincipledSets : public testing::TestWithParam<int> {};
 
-// 30 sets for each kind of material.
+// 30 sets for each kind of material, fewer where a value takes longer.
 TEST_P(PrincipledSets, SamplesFollowTheDensity) {
   const int kind = GetParam();
-  for (int n = 0; n < 30; ++n) {
+  for (int n = 0; n < (kind < 10 ? 30 : 6); ++n) {
     const std::uint64_t key = mix_bits(1000 * kind + n);
     PrincipledParameters p;
     p.roughness = any_of(kRoughness, key, 0);
@@ -115,6 +116,23 @@ TEST_P(PrincipledSets, SamplesFollowTheDensity) {
       p.thin = random_bits(key, 0, 11) % 4 == 0;
       if (random_bits(key, 0, 12) % 3 == 0) p.roughness = 0;
     }
+    if (kind == 8) {
+      p.specular_color = {any_of(kColor, key, 5) * any_of(kScale, key, 6)};
+      p.specular_weight = any_of(kWeight, key, 7);
+    }
+    if (kind == 10 || kind == 11) {
+      p.metallic = any_of(kWeight, key, 5), p.transmission = any_of(kWeight, key, 6);
+      p.thin = random_bits(key, 0, 7) % 4 == 0;
+      p.roughness = std::max(p.roughness, 0.12f);
+      if (kind == 10) p.anisotropy = 0.1f + 0.9f * random_float(key, 0, 8);
+      if (kind == 11) p.iridescence = 1, p.iridescence_ior = 1.8f, p.iridescence_thickness = 100.0f * n;
+    }
+    if (kind == 9) {
+      // The bins are not dense about the lobe of the coat.
+      p.coat = 1, p.coat_roughness = std::max(any_of(kRoughness, key, 6), 0.35f);
+      p.roughness = std::max(p.roughness, 0.12f);
+      p.coat_normal = direction_at(0.6 + 0.4 * random_float(key, 0, 7), n);
+    }
     SCOPED_TRACE(testing::Message() << "set " << n << " roughness " << p.roughness << " ior " << p.ior
                                     << " cosine " << mu << " front " << front);
     const Vec3f wo = direction_at(mu, 1 + n);
@@ -126,12 +144,13 @@ TEST_P(PrincipledSets, SamplesFollowTheDensity) {
 }
 
 std::string kind_name(const testing::TestParamInfo<int>& info) {
-  static const char* const names[] = {"Metal",     "Opaque", "Glass",    "Thin",
-                                      "Conductor", "Layers", "Mixtures", "GlassNearOne"};
+  static const char* const names[] = {"Metal",     "Opaque",     "Glass",     "Thin",
+                                      "Conductor", "Layers",     "Mixtures",  "GlassNearOne",
+                                      "Specular",  "TiltedCoat", "Stretched", "ThinFilm"};
   return names[info.param];
 }
 
-INSTANTIATE_TEST_SUITE_P(Bsdf, PrincipledSets, testing::Range(0, 8), kind_name);
+INSTANTIATE_TEST_SUITE_P(Bsdf, PrincipledSets, testing::Range(0, 12), kind_name);
 
 TEST(BsdfPhong, SamplesFollowTheDensity) {
   constexpr float kExponent[] = {0, 0.5f, 1, 10, 32.5f, 1000, 30000};

@@ -215,6 +215,12 @@ PrincipledParameters adversarial_principled(std::uint64_t key) {
                             &p.coat,     &p.coat_roughness, &p.coat_ior, &p.sheen, &p.sheen_roughness};
   std::uint32_t d = 10;
   for (float* s : scalars) *s = adversarial(key, d++);
+  p.specular_color = adversarial_color(key, 38), p.specular_weight = adversarial(key, 41);
+  if (random_bits(key, 7, 46) % 2 == 0) {
+    p.anisotropy = adversarial(key, 47), p.iridescence = adversarial(key, 48);
+    p.iridescence_ior = adversarial(key, 49), p.iridescence_thickness = adversarial(key, 50);
+  }
+  if (random_bits(key, 7, 42) % 3 == 0) p.coat_normal = adversarial_color(key, 43);
   p.thin = random_bits(key, 7, 30) % 3 == 0;
   if (random_bits(key, 7, 31) % 3 == 0)
     p.conductor = Conductor{adversarial_color(key, 32), adversarial_color(key, 35)};

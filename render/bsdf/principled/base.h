@@ -18,7 +18,8 @@
 /// - `leave(s, v, first, out)`: directions that leave facets other than mirrored;
 /// - `transmits(s)`: light may pass to the other side.
 
-#include "render/bsdf/ggx_albedo.h"
+#include "render/bsdf/facet_widths.h"
+#include "render/bsdf/thin_film.h"
 
 namespace oktett {
 
@@ -32,6 +33,11 @@ inline constexpr double kLeastIorDifference = 1e-3;
 bool is_smooth_glass(const PrincipledParameters& parameters);
 /// The width of facets; 0: smooth.
 double facet_width(double roughness);
+/// Of the base. Stretched ones are wider along x: 1 for an anisotropy of 1 (KHR_materials_anisotropy).
+FacetWidths base_facets(const PrincipledParameters& parameters);
+
+/// The film of `iridescence` on what has these indices of refraction for each channel.
+ThinFilm film_on(const PrincipledParameters& parameters, const Vec3d& eta, const Vec3d& k = {});
 
 /// What several lobes need of one side of a surface.
 struct PrincipledBase {
@@ -43,24 +49,94 @@ struct PrincipledBase {
   bool outside = true;  ///< the viewer is not inside glass, where neither coat nor sheen is seen
   bool front = true;    ///< the viewer is where the geometric normal points to
   bool thin = false;
-  double alpha = 0;        ///< width of the facets; 0: smooth
-  MirrorAlbedo mirror;     ///< of these facets
+  FacetWidths facets;      ///< 0: smooth
+  double alpha = 0;        ///< their width, of stretched ones the root of the mean square
+  MirrorAlbedo mirror;     ///< of facets of that width
   double mirror_loss = 0;  ///< its mean loss
 
   double metal = 0, opaque = 0, glass = 0;  ///< weights, which add to 1
 
   double ior = 1;                             ///< inside relative to outside
   double opaque_eta = 1, opaque_head_on = 0;  ///< of the opaque dielectric: index; reflectance head-on
-  ReflectedAlbedo opaque_albedo;
+  double opaque_loss = 0;                     ///< 1 - its albedo for diffuse light
+  double film = 0;                            ///< weight of a thin film, as seen from outside
+
+  /// The part of light from `w` that the opaque dielectric reflects; of a coloured one, in its brightest
+  /// channel.
+  template <class D>
+  OKTETT_INLINE D opaque_albedo(const Vec3<D>& w) const {
+    if (alpha > 0 && (facets.stretched() || film > 0)) return summed_opaque_albedo(w);
+    if (film > 0) return brightest_fresnel(w.z);
+    const D plain = dielectric_(w.z);
+    if (!has_specular_color_) return plain;
+    const D mirrored = alpha > 0 ? mirror(w.z) : D(1.0);
+    return within(D(most_.slope) * plain + D(most_.rise) * mirrored, D(0.0), D(1.0));
+  }
+  /// The part of light from `w` that facets send on which reflect all of it.
+  template <class D>
+  OKTETT_INLINE D mirror_albedo(const Vec3<D>& w) const {
+    if (!facets.stretched()) return mirror(w.z);
+    const D r = stretched_albedo(w, facets, [](const D&) { return D(1.0); });
+    return D(1.0) - lowered_loss(D(1.0) - r, kStretchedError);
+  }
+  /// Its reflectance, times `weight`.
+  template <class D>
+  OKTETT_INLINE Vec3<D> opaque_fresnel(const D& cosine, const D& weight) const {
+    const D plain = weight * fresnel_lanes(cosine, D(opaque_eta));
+    if (!has_specular_color_ && film == 0) return {plain, plain, plain};
+    const auto part = [&](const SpecularLine& l) {
+      return max(D(0.0), D(l.slope) * plain + D(l.rise) * weight);
+    };
+    const Vec3<D> bare{part(specular_[0]), part(specular_[1]), part(specular_[2])};
+    if (film == 0) return bare;
+    return bare * D(1 - film) + opaque_film_.reflectance(cosine) * (weight * D(film * specular_weight_));
+  }
+
+ private:
+  /// What `specular_color` and `specular_weight` make of Fresnel's reflectance F: slope F + rise. So any
+  /// reflectance head-on grows to the same at grazing angles, on a curve of the shape of Fresnel's.
+  struct SpecularLine {
+    double slope = 1, rise = 0;
+  };
+  void set_specular(const PrincipledParameters& parameters);
+  void set_film(const PrincipledParameters& parameters);
+
+  template <class D>
+  D brightest_fresnel(const D& cosine) const {
+    const Vec3<D> r = opaque_fresnel(cosine, D(1.0));
+    return max(max(r.x, r.y), r.z);
+  }
+  /// Below stretched facets, or below a film on facets, by a sum over facets.
+  template <class D>
+  D summed_opaque_albedo(const Vec3<D>& w) const {
+    const D r = film == 0 ? stretched_albedo(w, facets, [&](const D& c) { return brightest_fresnel(c); })
+                          : stretched_albedo(w, facets, [&](const D& c) { return brightest_with_film(c); });
+    return min(D(1.0), r + D(kStretchedDielectricError) * r / (r + D(0.02)));
+  }
+  /// brightest_fresnel() from its values at even distances.
+  template <class D>
+  OKTETT_INLINE D brightest_with_film(const D& cosine) const {
+    const D place = cosine * D(kFilmNodes - 1), node = within(whole_part(place), D(0.0), D(kFilmNodes - 2));
+    const D before = gather(brightest_.data(), node), after = gather(brightest_.data() + 1, node);
+    return before + (after - before) * (place - node);
+  }
+  static constexpr int kFilmNodes = 33;
+
+  ReflectedAlbedo dielectric_;
+  bool has_specular_color_ = false;
+  double specular_weight_ = 1;
+  SpecularLine specular_[3], most_;  ///< of the channels, of the brightest one
+  ThinFilm opaque_film_;
+  std::vector<float> brightest_;  ///< empty unless there is a film on facets
 };
 
 /// What GGX facets are for a viewer; nothing for smooth interfaces.
 template <class D>
 struct SeenFacets {
   SeenFacets() = default;
-  OKTETT_INLINE SeenFacets(const Vec3<D>& wo, double alpha) {
-    if (alpha == 0) return;
-    lambda = ggx_lambda(wo, D(alpha)), reflected = ggx_reflected_scale(wo, D(alpha));
+  OKTETT_INLINE SeenFacets(const Vec3<D>& wo, const FacetWidths& widths) {
+    if (widths.x == 0) return;
+    lambda = ggx_lambda(wo, widths), reflected = ggx_reflected_scale(wo, widths);
   }
   D lambda{0.0}, reflected{0.0};  ///< ggx_lambda, ggx_reflected_scale
 };
@@ -100,10 +176,11 @@ struct LobeSum {
 template <class D>
 struct MirroringFacets {
   OKTETT_INLINE MirroringFacets(const LobeView<D>& v, const LobeLight<D>& light) : cosine(light.cosine) {
-    const D alpha(v.base->alpha), normals = ggx_density(light.half, alpha);
+    const FacetWidths& widths = v.base->facets;
+    const D normals = ggx_density(light.half, widths);
     density = normals * v.facets.reflected;
     per_area = normals / (D(4.0) * v.wo.z);
-    shown = per_area / (D(1.0) + v.facets.lambda + ggx_lambda(light.wi, alpha));
+    shown = per_area / (D(1.0) + v.facets.lambda + ggx_lambda(light.wi, widths));
   }
   D cosine;    ///< of both directions with the normal of the facets
   D density;   ///< with which `wi` is sampled, if only facets are that reflect above the surface
@@ -128,7 +205,8 @@ struct LobeSampling {
         facets(scattered),
         all_facets(scattered),
         mirrored(scattered),
-        alpha(0.0) {}
+        alpha_x(0.0),
+        alpha_y(0.0) {}
 
   OKTETT_INLINE M chose(int lobe) const { return chosen == D(lobe); }
   /// By a lobe that is not delta.
@@ -144,9 +222,9 @@ struct LobeSampling {
     deflected = deflected | (lanes & (most > D(0.0)) & (chance > D(0.0)));
   }
   /// By facets, of which only those are of use that reflect above the surface.
-  OKTETT_INLINE void choose_facets(const M& lanes, double width) {
+  OKTETT_INLINE void choose_facets(const M& lanes, const FacetWidths& widths) {
     facets = facets | lanes;
-    alpha = select(lanes, D(width), alpha);
+    alpha_x = select(lanes, D(widths.x), alpha_x), alpha_y = select(lanes, D(widths.y), alpha_y);
   }
 
   D chosen, place;  ///< a lobe, and the place within its range of probability
@@ -156,7 +234,7 @@ struct LobeSampling {
 
   M facets, all_facets;  ///< lanes with facets; where those that reflect below the surface are of use, too
   M mirrored;            ///< lanes with facets that reflect
-  D alpha;
+  D alpha_x, alpha_y;
   Vec3<D> normal, reflected;  ///< of a facet; the viewer's direction, mirrored by it
   D cosine;                   ///< of the viewer with the normal
 };

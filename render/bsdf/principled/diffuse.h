@@ -10,7 +10,9 @@ namespace oktett {
 struct DiffuseSurface {
   DiffuseSurface() = default;
   OKTETT_INLINE DiffuseSurface(const PrincipledParameters&, const PrincipledBase& base) {
-    if (base.opaque > 0) scale = 1 / (std::numbers::pi * base.opaque_albedo.mean_loss());
+    // Nothing passes an interface that reflects all.
+    constexpr double kLeastLoss = 1e-9;
+    if (base.opaque_loss > kLeastLoss) scale = 1 / (std::numbers::pi * base.opaque_loss);
   }
   double scale = 0;  ///< such that what passes the interface is scattered
 };
@@ -31,7 +33,7 @@ class DiffuseLobe {
 
   OKTETT_INLINE void add_above(const Surface&, const LobeView<D>& v, const LobeLight<D>& light,
                                const D* chance, LobeSum<D>& sum) const {
-    const D cosine = light.wi.z, passed = D(1.0) - v.base->opaque_albedo(cosine);
+    const D cosine = light.wi.z, passed = D(1.0) - v.base->opaque_albedo(light.wi);
     sum.value = sum.value + broadcast<D>(v.base->base_color) * (weight_ * passed * cosine);
     sum.pdf = sum.pdf + *chance * cosine * D(1 / std::numbers::pi);
   }

@@ -13,10 +13,21 @@ struct GlassSurface {
     if (!(base.glass > 0)) return;
     eta = base.front || base.thin ? base.ior : 1 / base.ior;
     smooth = is_smooth_glass(p);
+    film_weight = limited(p.iridescence, 0, 1);
+    if (film_weight > 0) film = film_on(p, Vec3d{1, 1, 1} * base.ior);
   }
   bool transmits = false;  ///< also where metal hides all glass
   double eta = 1;          ///< index of refraction, behind relative to before
   bool smooth = true;
+  double film_weight = 0;  ///< of a film on the outside
+  ThinFilm film;
+};
+
+/// What glass reflects: in the mean, and each channel.
+template <class D>
+struct GlassFresnel {
+  D mean;
+  Vec3<D> color;
 };
 
 template <class D>
@@ -32,16 +43,17 @@ class GlassLobe {
 
   OKTETT_INLINE void set(const Surface& s, const LobeView<D>& v, ArrivingLight<D>& arriving, D* chance) {
     weight_ = arriving.all * D(v.base->glass);
-    const D reflectance = fresnel_of(s, *v.base, v.wo.z);
+    const D reflectance = fresnel_of(s, *v.base, v.wo.z).mean;
     *chance = weight_ * max(D(0.02), reflectance + (D(1.0) - reflectance) * D(v.base->tint));
   }
 
   OKTETT_INLINE void reflect(const Surface& s, const LobeView<D>& v, MirroringFacets<D>& facets,
                              const D* chance, D& pdf) const {
     if (s.smooth) return;
-    const D f = fresnel_of(s, *v.base, facets.cosine), visible = facets.per_area / (D(1.0) + v.facets.lambda);
-    facets.reflectance = facets.reflectance + grey(weight_ * f);
-    pdf = pdf + *chance * chance_of_reflection(*v.base, f) * (v.base->thin ? facets.density : visible);
+    const GlassFresnel<D> f = fresnel_of(s, *v.base, facets.cosine);
+    const D visible = facets.per_area / (D(1.0) + v.facets.lambda);
+    facets.reflectance = facets.reflectance + f.color * weight_;
+    pdf = pdf + *chance * chance_of_reflection(*v.base, f.mean) * (v.base->thin ? facets.density : visible);
   }
 
   /// Transmission through facets (Walter 2007), without the factor eta^2 of radiance. Through a thin wall it
@@ -49,13 +61,15 @@ class GlassLobe {
   OKTETT_INLINE void add_below(const Surface& s, const LobeView<D>& v, const Vec3<D>& wi, const D* chance,
                                LobeSum<D>& sum) const {
     const bool thin = v.base->thin;
-    const D one(1.0), zero(0.0), eta(s.eta), alpha(v.base->alpha);
+    const FacetWidths& widths = v.base->facets;
+    const D one(1.0), zero(0.0), eta(s.eta);
     const Vec3<D> both = thin ? v.wo + flipped(wi) : v.wo + wi * eta;
     const D size = length_lanes(both);
     M seen = size > zero;
     const Vec3<D> h = scale_lanes(both, one / select(both.z < zero, -size, size));
     const D c = min(one, dot_lanes(v.wo, h)), d = dot_lanes(wi, h);
-    const D reflectance = fresnel_of(s, *v.base, c), normals = ggx_density(h, alpha);
+    const GlassFresnel<D> reflectance = fresnel_of(s, *v.base, c);
+    const D normals = ggx_density(h, widths);
     D facing, density;
     if (thin) {
       facing = normals / (D(4.0) * v.wo.z);
@@ -66,10 +80,9 @@ class GlassLobe {
       facing = normals * c / v.wo.z * eta * eta * -d / (t * t);
       density = facing / (one + v.facets.lambda);
     }
-    const D shown = facing / (one + v.facets.lambda + ggx_lambda(wi, alpha));
-    const D value = weight_ * (one - reflectance) * shown;
-    const D pdf = *chance * (one - chance_of_reflection(*v.base, reflectance)) * density;
-    sum.value = sum.value + broadcast<D>(v.base->base_color) * select(seen, value, zero);
+    const D shown = facing / (one + v.facets.lambda + ggx_lambda(wi, widths));
+    const D pdf = *chance * (one - chance_of_reflection(*v.base, reflectance.mean)) * density;
+    sum.value = sum.value + passed(s, *v.base, reflectance, shown, seen);
     sum.pdf = sum.pdf + select(seen, pdf, zero);
   }
 
@@ -80,13 +93,15 @@ class GlassLobe {
       if (any(here)) sample_smooth(s, v, here, *chance, out);
       return;
     }
-    out.choose_facets(here, v.base->alpha);
+    out.choose_facets(here, v.base->facets);
     if (!v.base->thin) out.all_facets = out.all_facets | here;
   }
 
   /// The part of light that smooth glass lets pass, colour left out.
-  OKTETT_INLINE D passing(const Surface& s, const LobeView<D>& v) const {
-    return weight_ * (D(1.0) - fresnel_of(s, *v.base, v.wo.z));
+  OKTETT_INLINE Vec3<D> passing(const Surface& s, const LobeView<D>& v) const {
+    const Vec3<D> f = fresnel_of(s, *v.base, v.wo.z).color;
+    const D one(1.0);
+    return {weight_ * (one - f.x), weight_ * (one - f.y), weight_ * (one - f.z)};
   }
 
   /// Light that facets let pass.
@@ -95,7 +110,7 @@ class GlassLobe {
     const M here = out.chose(first);
     if (none(here)) return;
     const D zero(0.0), c = out.cosine;
-    const M passes = here & ~(out.place < chance_of_reflection(*v.base, fresnel_of(s, *v.base, c)));
+    const M passes = here & ~(out.place < chance_of_reflection(*v.base, fresnel_of(s, *v.base, c).mean));
     out.mirrored = out.mirrored & ~passes;
     if (v.base->thin) {
       out.scatter(passes & (out.reflected.z > zero), flipped(out.reflected));
@@ -109,9 +124,37 @@ class GlassLobe {
 
  private:
   /// Of a thin wall: with all reflections inside it.
-  static OKTETT_INLINE D fresnel_of(const Surface& s, const PrincipledBase& b, const D& cosine) {
+  static OKTETT_INLINE GlassFresnel<D> fresnel_of(const Surface& s, const PrincipledBase& b,
+                                                  const D& cosine) {
     const D f = min(D(1.0), fresnel_lanes(cosine, D(s.eta)));
-    return b.thin ? D(2.0) * f / (D(1.0) + f) : f;
+    if (s.film_weight > 0) return with_film(s, b, cosine, f);
+    const D all = b.thin ? with_inside(f) : f;
+    return {all, {all, all, all}};
+  }
+  static OKTETT_INLINE D with_inside(const D& f) { return D(2.0) * f / (D(1.0) + f); }
+  /// A film without losses reflects as much from inside, at the angle that light has outside.
+  static GlassFresnel<D> with_film(const Surface& s, const PrincipledBase& b, const D& cosine,
+                                   const D& bare) {
+    const D one(1.0), eta(s.eta);
+    const bool outside = b.front || b.thin;
+    const D out2 = one - (one - cosine * cosine) / (eta * eta);
+    const Vec3<D> film = s.film.reflectance(outside ? cosine : sqrt(max(D(0.0), out2)));
+    const auto part = [&](const D& r) {
+      const D all = outside ? r : select(out2 > D(0.0), r, one);
+      const D mixed = bare * D(1 - s.film_weight) + all * D(s.film_weight);
+      return b.thin ? with_inside(mixed) : mixed;
+    };
+    const Vec3<D> color{part(film.x), part(film.y), part(film.z)};
+    return {(color.x + color.y + color.z) * D(1 / 3.0), color};
+  }
+  /// Of light that facets let pass, where `seen`.
+  OKTETT_INLINE Vec3<D> passed(const Surface& s, const PrincipledBase& b, const GlassFresnel<D>& f,
+                               const D& shown, const M& seen) const {
+    const D one(1.0), zero(0.0);
+    const auto part = [&](const D& r) { return select(seen, weight_ * (one - r) * shown, zero); };
+    const Vec3<D> color = broadcast<D>(b.base_color);
+    if (s.film_weight == 0) return color * part(f.mean);
+    return {color.x * part(f.color.x), color.y * part(f.color.y), color.z * part(f.color.z)};
   }
   /// Of a sample of glass.
   static OKTETT_INLINE D chance_of_reflection(const PrincipledBase& b, const D& reflectance) {
@@ -121,10 +164,11 @@ class GlassLobe {
 
   OKTETT_INLINE void sample_smooth(const Surface& s, const LobeView<D>& v, const M& here, const D& chosen,
                                    LobeSampling<D>& out) const {
-    const D one(1.0), reflectance = fresnel_of(s, *v.base, v.wo.z);
-    const D chance = chance_of_reflection(*v.base, reflectance);
+    const D one(1.0);
+    const GlassFresnel<D> reflectance = fresnel_of(s, *v.base, v.wo.z);
+    const D chance = chance_of_reflection(*v.base, reflectance.mean);
     const M reflects = out.place < chance;
-    out.deflect(here & reflects, mirrored_by_surface(v.wo), grey(weight_ * reflectance), chosen * chance);
+    out.deflect(here & reflects, mirrored_by_surface(v.wo), reflectance.color * weight_, chosen * chance);
     Vec3<D> wi = -v.wo;
     if (!v.base->thin) {
       const D ratio(1 / s.eta);
@@ -132,7 +176,8 @@ class GlassLobe {
       wi.y = wi.y * ratio;
       wi.z = -sqrt(max(D(0.0), one - (wi.x * wi.x + wi.y * wi.y)));
     }
-    out.deflect(here & ~reflects, wi, broadcast<D>(v.base->base_color) * (weight_ * (one - reflectance)),
+    const Vec3<D> color = broadcast<D>(v.base->base_color), left = passing(s, v);
+    out.deflect(here & ~reflects, wi, {color.x * left.x, color.y * left.y, color.z * left.z},
                 chosen * (one - chance));
   }
 
@@ -146,7 +191,8 @@ struct GlassMultipleSurface {
   OKTETT_INLINE GlassMultipleSurface(const PrincipledParameters& p, const PrincipledBase& base) {
     const GlassSurface glass(p, base);
     if (glass.smooth) return;
-    const double eta = glass.eta, high = std::max(eta, 1 / eta), transmittance = 1 - mean_fresnel(high);
+    eta = glass.eta;
+    const double high = std::max(eta, 1 / eta), transmittance = 1 - mean_fresnel(high);
     if (base.thin) {
       loss = loss_behind = base.mirror_loss;
       passed = transmittance / (2 - transmittance);
@@ -156,6 +202,14 @@ struct GlassMultipleSurface {
       passed = transmittance * std::min(1.0, loss_behind / loss) / (eta > 1 ? 1 : high * high);
     }
   }
+  /// The part of light from `w` that reflection and transmission by facets send on.
+  template <class D>
+  OKTETT_INLINE D albedo_of(const Vec3<D>& w, const FacetWidths& facets) const {
+    if (!facets.stretched()) return albedo(w.z);
+    return D(1.0) - lowered_loss(D(1.0) - stretched_glass_albedo(w, facets, eta), kStretchedError);
+  }
+
+  double eta = 1;  ///< as of GlassSurface
   GlassAlbedo albedo, albedo_behind;
   double loss = 0, loss_behind = 0;  ///< mean losses of these, or of mirrors for thin glass
   double passed = 0;                 ///< which part of the light that single scattering loses is transmitted
@@ -175,7 +229,7 @@ class GlassMultipleLobe {
   static bool is_delta(const Surface&, const PrincipledBase&) { return false; }
 
   OKTETT_INLINE void set(const Surface& s, const LobeView<D>& v, ArrivingLight<D>& arriving, D* chance) {
-    const D albedo = v.base->thin ? v.base->mirror(v.wo.z) : s.albedo(v.wo.z);
+    const D albedo = v.base->thin ? v.base->mirror_albedo(v.wo) : s.albedo_of(v.wo, v.base->facets);
     const D lost = arriving.all * D(v.base->glass) * (D(1.0) - albedo);
     const D above = lost * D(1 - s.passed), below = lost * D(s.passed);
     above_ = above * D(1 / (std::numbers::pi * s.loss));

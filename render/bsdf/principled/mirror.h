@@ -18,20 +18,35 @@ OKTETT_INLINE Vec3<D> schlick(const Vec3d& head_on, const D& cosine) {
 struct MirrorSurface {
   MirrorSurface() = default;
   OKTETT_INLINE MirrorSurface(const PrincipledParameters& p, const PrincipledBase& base) {
-    if (!(base.metal > 0) || !p.conductor) return;
-    has_conductor = true;
-    eta = limited(p.conductor->eta, 1e-3, 1e3);
-    k = limited(p.conductor->k, 0, 1e3);
+    if (!(base.metal > 0)) return;
+    has_conductor = p.conductor.has_value();
+    if (has_conductor) {
+      eta = limited(p.conductor->eta, 1e-3, 1e3);
+      k = limited(p.conductor->k, 0, 1e3);
+    }
+    if (base.film == 0) return;
+    const auto& c = base.base_color;
+    const Vec3d like_color{ior_of_head_on(c.x), ior_of_head_on(c.y), ior_of_head_on(c.z)};
+    film = film_on(p, has_conductor ? eta : like_color, k);
   }
   /// Of metal.
   template <class D>
   OKTETT_INLINE Vec3<D> fresnel_of(const PrincipledBase& base, const D& cosine) const {
+    const Vec3<D> bare = bare_fresnel(base, cosine);
+    if (base.film == 0) return bare;
+    return bare * D(1 - base.film) + film.reflectance(cosine) * D(base.film);
+  }
+  bool has_conductor = false;
+  Vec3d eta, k;
+  ThinFilm film;
+
+ private:
+  template <class D>
+  OKTETT_INLINE Vec3<D> bare_fresnel(const PrincipledBase& base, const D& cosine) const {
     if (!has_conductor) return schlick(base.base_color, cosine);
     return {conductor_fresnel_lanes(cosine, eta.x, k.x), conductor_fresnel_lanes(cosine, eta.y, k.y),
             conductor_fresnel_lanes(cosine, eta.z, k.z)};
   }
-  bool has_conductor = false;
-  Vec3d eta, k;
 };
 
 template <class D>
@@ -53,7 +68,7 @@ class MirrorLobe {
       *chance = *chance + metal_ * max(D(0.02), max(max(reflected.x, reflected.y), reflected.z));
     }
     if (b.opaque > 0) {
-      const D reflected = b.opaque_albedo(v.wo.z);
+      const D reflected = b.opaque_albedo(v.wo);
       *chance = *chance + opaque_ * max(D(b.opaque_head_on), reflected);
       arriving.under_opaque = opaque_ * (D(1.0) - reflected);
     }
@@ -69,7 +84,7 @@ class MirrorLobe {
                             LobeSampling<D>& out) const {
     const M here = out.chose(first);
     if (v.base->alpha > 0)
-      out.choose_facets(here, v.base->alpha);
+      out.choose_facets(here, v.base->facets);
     else if (any(here))
       out.deflect(here, mirrored_by_surface(v.wo), reflectance(s, *v.base, v.wo.z), *chance);
   }
@@ -78,7 +93,7 @@ class MirrorLobe {
   OKTETT_INLINE Vec3<D> reflectance(const Surface& s, const PrincipledBase& b, const D& cosine) const {
     Vec3<D> sum{D(0.0), D(0.0), D(0.0)};
     if (b.metal > 0) sum = s.fresnel_of(b, cosine) * metal_;
-    if (b.opaque > 0) sum = sum + grey(opaque_ * fresnel_lanes(cosine, D(b.opaque_eta)));
+    if (b.opaque > 0) sum = sum + b.opaque_fresnel(cosine, opaque_);
     return sum;
   }
 
@@ -105,12 +120,11 @@ struct MetalMultipleSurface {
     if (!(base.metal > 0 && loss > 0)) return;
     lobe = MirrorMultipleScattering(base.alpha);
     const MirrorSurface metal(p, base);
-    const Vec3d mean = metal.has_conductor ? mean_reflectance([&](double c) {
-      return Vec3d{conductor_fresnel(c, metal.eta.x, metal.k.x), conductor_fresnel(c, metal.eta.y, metal.k.y),
-                   conductor_fresnel(c, metal.eta.z, metal.k.z)};
-    })
-                                           : base.base_color +
-                                                 (Vec3d{1, 1, 1} - base.base_color) * (1 / 21.0);
+    using Single = Simd<double, 1, ScalarIsa>;
+    const Vec3d mean =
+        metal.has_conductor || base.film > 0
+            ? mean_reflectance([&](double c) { return only_lane(metal.fresnel_of(base, Single(c))); })
+            : base.base_color + (Vec3d{1, 1, 1} - base.base_color) * (1 / 21.0);
     for (int i = 0; i < 3; ++i) color[i] = mean[i] * mean[i] * (1 - loss) / (1 - mean[i] * loss);
     most = max_component(color);
   }
@@ -132,7 +146,10 @@ class MetalMultipleLobe {
     const D metal = arriving.all * D(v.base->metal);
     facets_ = SeenFacets<D>(v.wo, s.lobe.alpha());
     weight_ = metal * s.lobe.scale(v.wo.z);
-    *chance = metal * (D(1.0) - v.base->mirror(v.wo.z)) * D(s.most);
+    const D lost = D(1.0) - v.base->mirror_albedo(v.wo);
+    // The lobe has the albedo of what facets lose that are as wide everywhere.
+    if (v.base->facets.stretched()) weight_ = weight_ * (lost / (D(1.0) - v.base->mirror(v.wo.z)));
+    *chance = metal * lost * D(s.most);
   }
 
   OKTETT_INLINE void add_above(const Surface& s, const LobeView<D>& v, const LobeLight<D>& light,
