@@ -11,7 +11,8 @@ target_link_libraries(oktett_internal INTERFACE TBB::tbb Threads::Threads)
 file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp)
 list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/")
 file(GLOB_RECURSE OKTETT_IO_SOURCES CONFIGURE_DEPENDS io/*.cpp)
-list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/image/oiio/")
+# These belong to libraries of their own: cmake/io_libraries.cmake.
+list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/(image/oiio|volume/openvdb|threemf/lib3mf)/")
 
 # The static library, too, may become part of a shared one, such as the Python module. Its functions are never replaced by
 # others of the same name, so they may be inlined as in a program.
@@ -47,32 +48,7 @@ include(cmake/instruction_sets.cmake)
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
 oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES})
 
-# What uses OpenImageIO, see io/image/library.h: a shared library that oktett loads when it is needed, and finds from where
-# the program or itself lies. It shows one symbol and has its own copy of the little that both need.
-file(GLOB OKTETT_IMAGE_SOURCES CONFIGURE_DEPENDS io/image/oiio/*.cpp)
-add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp core/math.cpp core/pages.cpp io/image/color.cpp)
-target_compile_features(oktett_images PRIVATE cxx_std_20)
-oktett_target_warnings(oktett_images)
-oktett_unity(oktett_images)
-target_link_libraries(oktett_images PRIVATE oktett_internal OpenImageIO::OpenImageIO fmt::fmt)
-if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-  target_link_options(oktett_images PRIVATE LINKER:--no-undefined)
-endif()
-set_target_properties(oktett_images PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
-  CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-add_dependencies(oktett oktett_images)
-file(RELATIVE_PATH oktett_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-set_property(SOURCE io/image/library.cpp APPEND PROPERTY COMPILE_DEFINITIONS
-  OKTETT_IMAGE_LIBRARY="liboktett_images.so.${PROJECT_VERSION}" OKTETT_LIBRARIES_FROM_PROGRAMS="${oktett_libraries}")
-if(BUILD_SHARED_LIBS)
-  set_property(SOURCE io/image/library.cpp APPEND PROPERTY COMPILE_DEFINITIONS OKTETT_SHARED)
-endif()
-if(NOT PROJECT_IS_TOP_LEVEL)
-  # The programs of another project may be built anywhere.
-  set_property(SOURCE io/image/library.cpp APPEND PROPERTY COMPILE_DEFINITIONS
-    OKTETT_BUILT_LIBRARIES="${PROJECT_BINARY_DIR}/lib")
-endif()
+include(cmake/io_libraries.cmake)
 
 # Oracles, cases and checks: `oktett verify`, the tests and the benchmarks link them.
 if(OKTETT_BUILD_APP OR OKTETT_BUILD_TESTS OR OKTETT_BUILD_BENCH)

@@ -5,7 +5,8 @@ set(sanitizers -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno
 file(GLOB sources CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.cpp ${PROJECT_SOURCE_DIR}/io/text/*.cpp ${PROJECT_SOURCE_DIR}/io/mesh/*.cpp
   ${PROJECT_SOURCE_DIR}/io/mesh/load/*.cpp ${PROJECT_SOURCE_DIR}/io/obj/*.cpp ${PROJECT_SOURCE_DIR}/io/ply/*.cpp
-  ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/off/*.cpp ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
+  ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/off/*.cpp ${PROJECT_SOURCE_DIR}/io/threemf/*.cpp
+  ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/(write|glb)_[a-z_]*\\.cpp$")
 add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp ${PROJECT_SOURCE_DIR}/io/image/color.cpp
   support/temp_dir.cpp fuzz/no_images.cpp)

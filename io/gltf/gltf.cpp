@@ -77,7 +77,7 @@ class SceneReader {
       warn("animations are not shown without a time: things are shown at rest");
   }
 
-  GltfScene run() {
+  FileScene run() {
     add_gltf_materials(file_, scene_);
     visit_nodes();
     for (const std::string& words : file_.model().warnings) warn(words);
@@ -143,9 +143,9 @@ class SceneReader {
     const std::vector<Affine> instances =
         is_skinned ? std::vector<Affine>{Affine{}} : instances_of(node, number);
     for (const GltfChoice& choice : choices_of(node.mesh)) {
-      GltfSharedMesh own;
+      SharedMesh own;
       if (is_bent) own = bent(node.mesh, choice, bendings);
-      const GltfSharedMesh& mesh = is_bent ? own : unbent(node.mesh, choice);
+      const SharedMesh& mesh = is_bent ? own : unbent(node.mesh, choice);
       if (mesh.mesh == nullptr) continue;
       const std::string& name = node.name.empty() ? mesh.name : node.name;
       if (is_skinned) {
@@ -172,7 +172,7 @@ class SceneReader {
   /// Shows a mesh at the instances of a node: that of the scene with the number `shared`, or copies of
   /// `strokes` in the world.
   void place(const std::string& name, std::uint32_t node, const std::vector<Affine>& instances,
-             const GltfSharedMesh& strokes, std::uint32_t shared) {
+             const SharedMesh& strokes, std::uint32_t shared) {
     for (const Affine& instance : instances) {
       const Affine to_world = pose().to_world[node] * instance;
       if (!is_usable(to_world))
@@ -186,7 +186,7 @@ class SceneReader {
   }
 
   /// A mesh as the file has it; a null mesh if it is empty.
-  const GltfSharedMesh& unbent(std::uint32_t number, const GltfChoice& choice) {
+  const SharedMesh& unbent(std::uint32_t number, const GltfChoice& choice) {
     const auto [found, is_new] = unbent_.try_emplace({number, choice});
     if (is_new) found->second = build(number, choice, nullptr);
     return found->second;
@@ -199,16 +199,16 @@ class SceneReader {
     return found->second;
   }
 
-  std::uint32_t add(GltfSharedMesh mesh) {
+  std::uint32_t add(SharedMesh mesh) {
     scene_.meshes.push_back(std::move(mesh));
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
 
-  GltfSharedMesh build(std::uint32_t number, const GltfChoice& choice, const GltfBending* bending) {
+  SharedMesh build(std::uint32_t number, const GltfChoice& choice, const GltfBending* bending) {
     std::vector<std::string> warnings;
     GltfBuiltMesh built = builder_.build(number, choice, bending, warnings);
     for (const std::string& words : warnings) warn(words);
-    GltfSharedMesh mesh;
+    SharedMesh mesh;
     mesh.name = file_.model().meshes[number].name, mesh.slots = std::move(built.slots);
     mesh.is_strokes = choice.strokes;
     if (built.mesh.triangle_count() > 0) mesh.mesh = std::make_shared<TriangleMesh>(std::move(built.mesh));
@@ -216,9 +216,8 @@ class SceneReader {
   }
 
   /// A mesh as it is bent at all poses, the first of which it shows.
-  GltfSharedMesh bent(std::uint32_t number, const GltfChoice& choice,
-                      const std::vector<GltfBending>& bendings) {
-    GltfSharedMesh mesh = build(number, choice, bendings.data());
+  SharedMesh bent(std::uint32_t number, const GltfChoice& choice, const std::vector<GltfBending>& bendings) {
+    SharedMesh mesh = build(number, choice, bendings.data());
     if (mesh.mesh == nullptr) return mesh;
     MeshBending all;
     bool moves = false;
@@ -241,8 +240,8 @@ class SceneReader {
   }
 
   /// The same strokes in another place.
-  GltfSharedMesh moved(const GltfSharedMesh& strokes, const Affine& map) {
-    GltfSharedMesh out = strokes;
+  SharedMesh moved(const SharedMesh& strokes, const Affine& map) {
+    SharedMesh out = strokes;
     if (map.is_identity()) return out;
     const auto move = [&](Column<Vec3f>& positions) {
       accessors_.spend(positions.bytes());
@@ -270,7 +269,7 @@ class SceneReader {
       if (accessor == kNoId) return;
       const std::vector<float> numbers = accessors_.numbers(accessor, components);
       const std::size_t count = numbers.size() / components;
-      accessors_.spend(count * (sizeof(GltfPlace) + sizeof(Affine) + sizeof(GltfPlacement)));
+      accessors_.spend(count * (sizeof(GltfPlace) + sizeof(Affine) + sizeof(PlacedMesh)));
       if (places.empty()) places.resize(count);
       if (places.size() != count)
         file_.fail("nodes[" + std::to_string(number) + "]: attributes of " + std::to_string(places.size()) +
@@ -359,25 +358,25 @@ class SceneReader {
   GltfMeshBuilder builder_;
   std::vector<double> times_;    ///< from 0 to 1
   std::vector<GltfPose> poses_;  ///< at these
-  GltfScene scene_;
-  std::map<std::pair<std::uint32_t, GltfChoice>, GltfSharedMesh> unbent_;
+  FileScene scene_;
+  std::map<std::pair<std::uint32_t, GltfChoice>, SharedMesh> unbent_;
   std::map<std::uint32_t, std::uint32_t> mesh_of_;  ///< index in the scene, by that in the file
 };
 
 }  // namespace
 
-GltfScene load_gltf_scene(const std::string& path, const GltfOptions& options) {
+FileScene load_gltf_scene(const std::string& path, const GltfOptions& options) {
   return SceneReader(path, options).run();
 }
 
-double usual_stroke_width(GltfScene& scene, const std::string& path) {
+double usual_stroke_width(FileScene& scene, const std::string& path) {
   StrokeCount count;
-  for (const GltfSharedMesh& shared : scene.meshes)
+  for (const SharedMesh& shared : scene.meshes)
     if (shared.is_strokes) count.add(*shared.mesh);
   if (count.all() == 0) return 0;
   Box box;
   std::map<std::uint32_t, Box> boxes;
-  for (const GltfPlacement& placement : scene.placements) {
+  for (const PlacedMesh& placement : scene.placements) {
     const auto [found, is_new] = boxes.try_emplace(placement.mesh);
     if (is_new)
       each_corner(*scene.meshes[placement.mesh].mesh, [&](const Vec3f& p) { found->second.grow(p); });

@@ -91,6 +91,6 @@ inline constexpr float kGltfMaskSlope = 1e4f, kGltfMaskAtCutoff = 1 + 0x1p-9f;
 
 /// Sets the materials and textures of `scene`; the images of textures that are not in files are copied from
 /// the buffers. Throws Error.
-void add_gltf_materials(const GltfFile& file, GltfScene& scene);
+void add_gltf_materials(const GltfFile& file, FileScene& scene);
 
 }  // namespace oktett

@@ -25,7 +25,7 @@ bool is_known_image(std::string_view bytes) {
 /// Converts all materials of a file.
 class Materials {
  public:
-  Materials(const GltfFile& file, GltfScene& scene) : file_(file), scene_(scene), list_(scene.textures) {}
+  Materials(const GltfFile& file, FileScene& scene) : file_(file), scene_(scene), list_(scene.textures) {}
 
   void run() {
     find_colors();
@@ -282,7 +282,7 @@ class Materials {
   static constexpr float kMostAbsorption = 1e30f;
 
   const GltfFile& file_;
-  GltfScene& scene_;
+  FileScene& scene_;
   TextureList list_;
   UvSets uv_sets_;  ///< of the material that is converted
   Colors colors_;   ///< likewise
@@ -292,6 +292,6 @@ class Materials {
 
 }  // namespace
 
-void add_gltf_materials(const GltfFile& file, GltfScene& scene) { Materials(file, scene).run(); }
+void add_gltf_materials(const GltfFile& file, FileScene& scene) { Materials(file, scene).run(); }
 
 }  // namespace oktett

@@ -288,7 +288,7 @@ class GlbWriting {
       losses_.push_back(kNotCompared);
       return;
     }
-    GltfScene read;
+    FileScene read;
     add_gltf_materials(GltfFile(temporary), read);
     std::vector<std::string> changed;
     for (std::size_t i = 0; i < written_.size(); ++i) {

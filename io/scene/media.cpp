@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/scene/density_file.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
+#include "io/volume/density_file.h"
+#include "io/volume/vdb_file.h"
 #include "render/medium/density_noise.h"
 
 namespace oktett {
@@ -25,10 +26,21 @@ struct GridBox {
   }
 };
 
+/// The name of a grid in a file.
+struct GridName {
+  std::string text;
+};
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, GridName& name) {
+  name.text = load.values.text(node);
+  if (name.text.empty()) throw Error(node.where(), "expected the name of a grid, found nothing");
+}
+std::string schema_of(Schema&, const Range&, const GridName&) { return Schema::text(); }
+
 struct MediumKeys {
   Medium medium{};
   double density = 1;
   DensityNoise noise{};
+  GridName grid_name{};
   GridBox bounds{};
   Affine transform{};
 
@@ -42,6 +54,7 @@ struct MediumKeys {
     p.field("anisotropy", medium.anisotropy, Range{-most, most}, "mean cosine of scattering");
     p.field("density", density, kNonNegative, "multiplies absorption, scattering and emission");
     p.optional("grid", ByHand{"file", "file"}, "densities that multiply them from place to place");
+    p.optional("grid_name", grid_name, "which grid of an OpenVDB file");
     p.optional("noise", noise, "such densities, computed");
     p.field("bounds", bounds, "the box that the densities fill");
     p.optional("transform", transform, "of that box");
@@ -57,18 +70,38 @@ void scale_coefficient(const Fields& fields, const char* key, double density, Co
                                                   static_cast<double>(kMostCoefficient)));
 }
 
+/// What an OpenVDB file says of a medium: its densities and where they are.
+void read_vdb_grid(SceneLoad& load, const Fields& fields, const std::string& path, MediumKeys& keys) {
+  if (const YamlNode* const bounds = fields["bounds"])
+    throw Error(bounds->where(), "an OpenVDB file says where its grid is; 'transform' moves it");
+  std::vector<Warning> warnings;
+  PlacedDensities read = read_vdb(path, keys.grid_name.text, warnings);
+  for (const Warning& warning : warnings) load.warn(warning.where, warning.message);
+  if (const std::string reason = why_degenerate(read.place); !reason.empty())
+    throw Error(Location{path}, "the place of the grid: " + reason);
+  keys.medium.grid = std::move(read.grid), keys.medium.grid_place = read.place;
+}
+
 /// The grid of a medium and where it is.
 void finish_grid(SceneLoad& load, const Fields& fields, MediumKeys& keys) {
   const YamlNode *file = fields["grid"], *transform = fields["transform"];
+  const std::string path = file ? load.values.existing_file(*file) : std::string();
+  const bool is_vdb = file && is_vdb_file(path);
+  if (const YamlNode* const name = fields["grid_name"]; name && !is_vdb)
+    throw Error(name->where(), "only a 'grid' that is an OpenVDB file (.vdb) has names");
   if (!file && !fields["noise"]) {
     if (const YamlNode* place = fields["bounds"] ? fields["bounds"] : transform)
       throw Error(place->where(), "only a medium with a 'grid' or 'noise' has a place");
     return;
   }
   Medium& medium = keys.medium;
-  medium.grid = file ? read_density_file(load.values.existing_file(*file)) : density_of(keys.noise);
-  const GridBox& box = keys.bounds;
-  medium.grid_place = Affine::translation(box.lo) * Affine::scaling(box.hi - box.lo);
+  if (is_vdb) {
+    read_vdb_grid(load, fields, path, keys);
+  } else {
+    medium.grid = file ? read_density_file(path) : density_of(keys.noise);
+    const GridBox& box = keys.bounds;
+    medium.grid_place = Affine::translation(box.lo) * Affine::scaling(box.hi - box.lo);
+  }
   if (!transform) return;
   medium.grid_place = keys.transform * medium.grid_place;
   if (const std::string reason = why_degenerate(medium.grid_place); !reason.empty())

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/mesh_geometry.h"
 #include "io/gltf/gltf.h"
+#include "io/mesh/load/load_file_scene.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/reading.h"
 #include "io/ply/ply.h"
@@ -28,14 +30,14 @@
 
 namespace oktett {
 
-// ---- Whole scenes from glTF files.
+// ---- Whole scenes from files that place meshes.
 
 namespace {
 
 /// Adds the parts of a file to a scene.
 class Adding {
  public:
-  Adding(const std::string& path, double stroke_width, GltfScene& file, Scene& scene)
+  Adding(const std::string& path, double stroke_width, FileScene& file, Scene& scene)
       : path_(path),
         file_(file),
         scene_(scene),
@@ -51,7 +53,7 @@ class Adding {
 
   void add_objects() {
     std::vector<std::uint32_t> uses(file_.meshes.size()), prototypes(file_.meshes.size(), kNoId);
-    for (const GltfPlacement& placement : file_.placements) ++uses[placement.mesh];
+    for (const PlacedMesh& placement : file_.placements) ++uses[placement.mesh];
     for (std::uint32_t i = 0; i < uses.size(); ++i) {
       if (uses[i] < 2) continue;
       if (file_.meshes[i].bending != nullptr)
@@ -61,9 +63,9 @@ class Adding {
       scene_.prototypes.push_back({file_.meshes[i].name, {object(file_.meshes[i].name, shape(i))}});
     }
     // Instances that follow each other may become one list.
-    for (const GltfPlacement& placement : file_.placements)
+    for (const PlacedMesh& placement : file_.placements)
       if (uses[placement.mesh] < 2) add(placement, shape(placement.mesh));
-    for (const GltfPlacement& placement : file_.placements)
+    for (const PlacedMesh& placement : file_.placements)
       if (uses[placement.mesh] > 1) add(placement, InstanceShape{prototypes[placement.mesh]});
   }
 
@@ -100,14 +102,14 @@ class Adding {
     return object;
   }
 
-  void add(const GltfPlacement& placement, Shape shape) {
+  void add(const PlacedMesh& placement, Shape shape) {
     scene_.objects.push_back(object(placement.name, std::move(shape)));
     scene_.objects.back().transform = placement.to_world;
     scene_.objects.back().motion = placement.motion;
   }
 
   const std::string& path_;
-  GltfScene& file_;
+  FileScene& file_;
   Scene& scene_;
   const double stroke_width_;
   std::vector<std::uint32_t> materials_;
@@ -117,8 +119,9 @@ class Adding {
 }  // namespace
 
 /// Adds the objects of `file`, which was read from `path`, with their materials and lights to `scene`. Its
-/// camera replaces that of the scene. A mesh that several nodes show becomes a prototype.
-static void add_gltf(const std::string& path, const GltfOptions& options, GltfScene file, Scene& scene) {
+/// camera replaces that of the scene. A mesh in several places becomes a prototype.
+static void add_file_scene(const std::string& path, const GltfOptions& options, FileScene file,
+                           Scene& scene) {
   Adding adding(path, options.stroke_width, file, scene);
   adding.add_objects();
   adding.add_view_and_lights();
@@ -130,7 +133,7 @@ constexpr std::size_t kMaxIncludeDepth = 16;
 constexpr std::size_t kMaxIncludedFiles = 256;
 /// Behind things that stand in no scene.
 constexpr Color kPlainBackground{0.30f, 0.34f, 0.40f};
-/// Per pixel, of a glTF file with a camera or lights of its own.
+/// Per pixel, of a file with a camera, lights or many instances of its own.
 constexpr std::uint32_t kSceneSamples = 64;
 
 /// A section with a reader of its own, and what it may be. One that `defines` names may be what is missing
@@ -232,9 +235,11 @@ class FileReader {
     const std::string canonical = canonical_path(path);
     check_cycle(item, path, canonical);
     if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) return;
-    if (is_gltf_file(path)) {
+    if (has_file_scene(path)) {
       seen_.push_back(canonical);
-      add_gltf(path, load_.gltf, load_gltf_scene(path, load_.gltf), load_.scene);
+      GltfOptions options = load_.gltf;
+      if (!is_gltf_file(path)) options = {.stroke_width = options.stroke_width};
+      add_file_scene(path, options, load_file_scene(path, options), load_.scene);
       load_.prototype_levels.resize(load_.scene.prototypes.size());
       return;
     }
@@ -267,9 +272,10 @@ void expect_readable(const std::string& path) {
 }
 
 /// A scene of its own: path tracing, which its materials are made for.
-Scene scene_from_gltf(const std::string& path, const GltfOptions& options, GltfScene file) {
+Scene scene_from_file(const std::string& path, const GltfOptions& options, FileScene file, const Vec3d& up) {
   Scene scene;
   scene.source = path;
+  scene.camera.up = up;
   scene.background = kPlainBackground;
   scene.integrator.kind = IntegratorKind::path;
   scene.integrator.samples = kSceneSamples;
@@ -278,7 +284,7 @@ Scene scene_from_gltf(const std::string& path, const GltfOptions& options, GltfS
   if (file.aspect > 0)
     scene.film.width =
         static_cast<std::uint32_t>(std::clamp(std::round(scene.film.height * file.aspect), 1.0, 4096.0));
-  add_gltf(path, options, std::move(file), scene);
+  add_file_scene(path, options, std::move(file), scene);
   return scene;
 }
 
@@ -322,13 +328,20 @@ static bool has_area(const TriangleMesh& mesh) {
   return false;
 }
 
-/// What points up in a mesh that is given alone. In glTF +y does, in STL, the format of printers, +z, and in
-/// PLY by Blender its own +z, unlike in its OBJ.
-static Vec3d up_of(const std::string& path, const TriangleMesh& mesh) {
-  if (is_gltf_file(path)) return {0, 1, 0};
+/// What points up in the files of a format. In glTF +y does, in 3MF and STL, the formats of printers, +z, and
+/// in PLY by Blender its own +z, unlike in its OBJ.
+static std::optional<Vec3d> up_of_format(const std::string& path) {
+  if (is_gltf_file(path)) return Vec3d{0, 1, 0};
   const std::string extension = lower_case_extension(without_packing(path));
-  const bool z = extension == ".stl" || (extension == ".ply" && is_ply_of_blender(path));
-  return z ? Vec3d{0, 0, 1} : guess_up(mesh);
+  if (extension == ".stl" || extension == ".3mf" || (extension == ".ply" && is_ply_of_blender(path)))
+    return Vec3d{0, 0, 1};
+  return std::nullopt;
+}
+
+/// What points up in a mesh that is given alone.
+static Vec3d up_of(const std::string& path, const TriangleMesh& mesh) {
+  const std::optional<Vec3d> up = up_of_format(path);
+  return up ? *up : guess_up(mesh);
 }
 
 Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
@@ -339,13 +352,13 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   scene.source = path;
   MeshLibrary meshes;
   MeshLibrary::Entry entry;
-  if (is_gltf_file(path)) {
-    GltfScene file = load_gltf_scene(path, gltf);
-    const bool moves = std::ranges::any_of(file.placements, [&](const GltfPlacement& p) {
+  if (has_file_scene(path)) {
+    FileScene file = load_file_scene(path, gltf);
+    const bool moves = std::ranges::any_of(file.placements, [&](const PlacedMesh& p) {
       return p.motion != nullptr || file.meshes[p.mesh].bending != nullptr;
     });
     if (moves || file.camera || !file.lights.empty() || !can_be_one_mesh(file))
-      return scene_from_gltf(path, gltf, std::move(file));
+      return scene_from_file(path, gltf, std::move(file), *up_of_format(path));
     entry = MeshLibrary::add(one_mesh(path, std::move(file)), scene);
   } else {
     entry = meshes.load(path, {.weld = repeats_vertices(path)}, scene);

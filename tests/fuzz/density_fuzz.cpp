@@ -1,6 +1,6 @@
 // Density grids in files.
 
-#include "io/scene/density_file.h"
+#include "io/volume/density_file.h"
 #include "tests/fuzz/input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,9 +3,9 @@
 #include "io/gltf/gltf.h"
 #include "tests/fuzz/mesh_checks.h"
 
-static void check_scene(const std::string& path, oktett::GltfScene scene) {
+static void check_scene(const std::string& path, oktett::FileScene scene) {
   using namespace oktett;
-  for (const GltfSharedMesh& shared : scene.meshes) {
+  for (const SharedMesh& shared : scene.meshes) {
     test::require_sound(*shared.mesh);
     for (const std::uint16_t slot : shared.mesh->material_slots)
       test::require(slot < shared.slots.size(), "slots have materials");
@@ -14,7 +14,7 @@ static void check_scene(const std::string& path, oktett::GltfScene scene) {
   }
   for (const Material& material : scene.materials)
     test::require(material.interior == kNoId || material.interior < scene.media.size(), "media exist");
-  for (const GltfPlacement& placement : scene.placements)
+  for (const PlacedMesh& placement : scene.placements)
     test::require(placement.mesh < scene.meshes.size() && placement.to_world.is_invertible(),
                   "places are good");
   if (!can_be_one_mesh(scene)) return;

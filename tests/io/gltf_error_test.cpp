@@ -258,10 +258,10 @@ TEST(GltfError, NothingIsAllocatedThatTheFileDoesNotJustify) {
     const std::string rest =
         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"nodes\":[" +
         nodes + "],\"scenes\":[{\"nodes\":[" + numbers + "]}]";
-    EXPECT_EQ(
-        files.error(out.glb(rest)),
-        "a.glb: its nodes show 30000000 triangles, of which 10000 are different; too many for one mesh, but "
-        "'include' keeps them as instances");
+    EXPECT_EQ(files.error(out.glb(rest)),
+              "a.glb: its objects show 30000000 triangles, of which 10000 are different; too many for one "
+              "mesh, but "
+              "'include' keeps them as instances");
     EXPECT_EQ(files.scene(out.glb(rest)).placements.size(), 3000u);
     // Primitives that share the indices.
     std::string primitives;

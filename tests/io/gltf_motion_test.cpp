@@ -36,7 +36,7 @@ class Moving {
                 "\"}]}]"));
   }
 
-  GltfScene scene(const GltfOptions& options) const { return load_gltf_scene(path_, options); }
+  FileScene scene(const GltfOptions& options) const { return load_gltf_scene(path_, options); }
   /// Where the node shows a point.
   Vec3d point(double time, const Vec3d& p) const {
     return scene(at_time(time)).placements.at(0).to_world.point(p);
@@ -89,7 +89,7 @@ TEST(GltfMotion, CubicCurvesAreThoseOfTheirTangents) {
 
 TEST(GltfMotion, WithoutATimeThingsAreAtRest) {
   const Moving moving("translation", {0, 2}, {1, 0, 0, 3, 0, 0}, 3, "LINEAR", ",\"translation\":[7,0,0]");
-  const GltfScene scene = moving.scene({});
+  const FileScene scene = moving.scene({});
   EXPECT_EQ(scene.placements.at(0).to_world.point({0, 0, 0}), (Vec3d{7, 0, 0}));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_EQ(scene.warnings[0].message, "animations are not shown without a time: things are shown at rest");
@@ -99,7 +99,7 @@ TEST(GltfMotion, WithoutATimeThingsAreAtRest) {
 // Weights of the mesh, of the node, of the animation: each replaces those before.
 TEST(GltfMotion, MorphTargetsAreAddedByTheirWeights) {
   const auto z = [](const Moving& moving, const GltfOptions& options) {
-    const GltfScene scene = moving.scene(options);
+    const FileScene scene = moving.scene(options);
     const Vec3f p = scene.meshes.at(0).mesh->positions[2];
     EXPECT_EQ((Vec3f{p.x, p.y, 0}), (Vec3f{0, 1, 0}));
     return p.z;
@@ -115,7 +115,7 @@ TEST(GltfMotion, MorphTargetsAreAddedByTheirWeights) {
 // Nine poses while the shutter is open, from time 0 to 1 of the scene.
 TEST(GltfMotion, TheShutterBlursWhatMoves) {
   const Moving moving("translation", {0, 4}, {0, 0, 0, 8, 0, 0}, 3, "LINEAR");
-  const GltfScene scene = moving.scene(at_time(1, 0.5));
+  const FileScene scene = moving.scene(at_time(1, 0.5));
   const MotionPointer motion = scene.placements.at(0).motion;
   ASSERT_TRUE(motion);
   for (const double t : {0.0, 0.25, 0.6, 1.0})
@@ -167,7 +167,7 @@ TEST(GltfMotion, SkinsMoveVerticesWithTheirJoints) {
   for (const char* const node : {"", ",\"translation\":[100,0,0]", ",\"scale\":[0,0,0]"}) {
     const Skinned skinned(node);
     const auto mesh_at = [&](const GltfOptions& options) {
-      const GltfScene scene = load_gltf_scene(skinned.path, options);
+      const FileScene scene = load_gltf_scene(skinned.path, options);
       EXPECT_TRUE(scene.placements.at(0).to_world.is_identity());
       return scene.meshes.at(0).mesh;
     };
@@ -251,12 +251,12 @@ TEST(GltfMotion, TheShutterBlursSkinsAndMorphTargets) {
 /// Each moment of the shutter has the vertices between two of nine poses, which are those of the file then.
 TEST(GltfMotion, PosesOfTheShutterAreThoseOfTheirTimes) {
   const Skinned skinned;
-  const GltfScene scene = load_gltf_scene(skinned.path, at_time(0.25, 0.5));
+  const FileScene scene = load_gltf_scene(skinned.path, at_time(0.25, 0.5));
   ASSERT_NE(scene.meshes.at(0).bending, nullptr);
   const std::vector<MeshPose>& poses = scene.meshes[0].bending->poses;
   ASSERT_EQ(poses.size(), 9u);
   for (const MeshPose& pose : poses) {
-    const GltfScene then = load_gltf_scene(skinned.path, at_time(0.25 + 0.5 * pose.time));
+    const FileScene then = load_gltf_scene(skinned.path, at_time(0.25 + 0.5 * pose.time));
     EXPECT_EQ(then.meshes.at(0).bending, nullptr);
     EXPECT_EQ(to_vector(pose.positions), to_vector(then.meshes[0].mesh->positions));
     EXPECT_EQ(to_vector(pose.normals), to_vector(then.meshes[0].mesh->normals));

@@ -123,7 +123,7 @@ TEST(GltfScene, NodesThatShareAMeshAreInstances) {
 
 TEST(GltfScene, OrthographicCamera) {
   const GltfFiles files;
-  const GltfScene scene = files.scene(
+  const FileScene scene = files.scene(
       with_triangle("\"nodes\":[{\"camera\":0,\"rotation\":[0,1,0,0]}],\"cameras\":[{\"type\":"
                     "\"orthographic\",\"orthographic\":"
                     "{\"xmag\":3,\"ymag\":2,\"znear\":0,\"zfar\":9}}],\"scenes\":[{\"nodes\":[0]}]"));
@@ -137,7 +137,7 @@ TEST(GltfScene, OrthographicCamera) {
 // Candela and lux over pi are the colours of lights here, see render/scene.h.
 TEST(GltfScene, Lights) {
   const GltfFiles files;
-  const GltfScene scene = files.scene(with_triangle(
+  const FileScene scene = files.scene(with_triangle(
       "\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}},"
       "{\"translation\":[1,2,3],\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}},"
       "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":2}}}],\"scenes\":[{\"nodes\":[0,1,2]}],"
@@ -574,7 +574,7 @@ TEST(GltfScene, VariantsChooseMaterials) {
   const auto shown = [&](const std::string& variant) {
     GltfOptions options;
     options.variant = variant;
-    const GltfScene scene = load_gltf_scene(path, options);
+    const FileScene scene = load_gltf_scene(path, options);
     return scene.materials.at(scene.meshes.at(0).slots.at(0)).name;
   };
   EXPECT_EQ(shown(""), "a");
@@ -597,7 +597,7 @@ TEST(GltfScene, NodesShowTheirMeshManyTimes) {
   out.vectors({{1, 0, 0}, {0, 2, 0}});
   out.array(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 0, 127}, kInt8, "VEC4", 4, ",\"normalized\":true");
   out.vectors({{1, 1, 1}, {3, 1, 1}});
-  const GltfScene scene = files.scene(out.glb(
+  const FileScene scene = files.scene(out.glb(
       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,"
       "\"translation\":[10,0,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
       "\"TRANSLATION\":1,\"ROTATION\":2,\"SCALE\":3}}}}],\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],"
@@ -613,7 +613,7 @@ TEST(GltfScene, NodesShowTheirMeshManyTimes) {
 // KHR_lights_punctual: the square of (cos a - cos outer) / (cos inner - cos outer).
 TEST(GltfScene, SpotsFadeAsTheSquareOfTheCosine) {
   const GltfFiles files;
-  const GltfScene scene = files.scene(with_triangle(
+  const FileScene scene = files.scene(with_triangle(
       "\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{\"KHR_lights_"
       "punctual\":"
       "{\"lights\":[{\"type\":\"spot\",\"spot\":{\"innerConeAngle\":0.3,\"outerConeAngle\":0.9}}]}}"));
@@ -656,7 +656,7 @@ TEST(GltfScene, ValidPartsThatAreNotShownDoNotMatter) {
   const MeshFile zeros = read("", "{\"attributes\":{\"POSITION\":0},\"indices\":3}");
   EXPECT_EQ(to_vector(zeros.mesh.indices), (std::vector<std::uint32_t>{0, 0, 0}));
   // A camera that cannot be shown is left out.
-  const GltfScene scene =
+  const FileScene scene =
       files.scene(out.glb("\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":4,\"znear\":1}}],"
                           "\"nodes\":[{\"camera\":0}]"));
   EXPECT_FALSE(scene.camera);

@@ -109,7 +109,7 @@ struct GltfFiles {
   MeshFile load(const std::string& bytes, const char* name = "a.glb") const {
     return load_mesh(files.write(name, bytes));
   }
-  GltfScene scene(const std::string& bytes, const char* name = "a.glb") const {
+  FileScene scene(const std::string& bytes, const char* name = "a.glb") const {
     return load_gltf_scene(files.write(name, bytes));
   }
   std::vector<std::string> warnings(const std::string& bytes) const {

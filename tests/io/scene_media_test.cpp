@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "io/volume/vdb_file.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett::scene_media_test {
@@ -189,9 +190,20 @@ TEST(SceneMedia, ReportsBadPlacesAndNoise) {
     expect_error("media: {a: {noise: {}, bounds: {min: [0, 0, 0], max: " + flat + "}}}\n",
                  "'min' below 'max'");
   expect_error("media: {a: {noise: {}, transform: {scale: 0}}}\n", "2:35");
+  expect_error("media: {a: {noise: {}, grid_name: density}}\n",
+               "2:35: only a 'grid' that is an OpenVDB file");
   expect_error("media: {a: {noise: {size: 1}}}\n", "2 to 512");
   expect_error("media: {a: {noise: {threshold: 1}}}\n", "less than 1");
   expect_error("media: {a: {noise: {octaves: 13}}}\n", "1 to 12");
+}
+
+// What such files hold is tested with OpenVDB, which not every build has.
+TEST(SceneMedia, FilesOfOpenVdbNeedItsLibrary) {
+  SceneFiles files;
+  files.dir.write("smoke.VDB", "no file of OpenVDB");
+  expect_starts(files.error_v1("media: {a: {grid: smoke.VDB}}\n"),
+                can_read_vdb() ? "smoke.VDB: cannot be read as an OpenVDB file: "
+                               : "smoke.VDB: is an OpenVDB file, and this program is built without OpenVDB");
 }
 
 }  // namespace

@@ -302,9 +302,9 @@ TEST(Strokes, AnimationsSkinsAndMorphTargetsMoveThem) {
           "0,\"path\":\"translation\"}}],\"samplers\":[{\"input\":2,\"output\":3}]}]"));
   GltfOptions options;
   options.time = 0.5, options.shutter = 0.5;
-  const GltfScene scene = load_gltf_scene(path, options);
+  const FileScene scene = load_gltf_scene(path, options);
   ASSERT_EQ(scene.placements.size(), 1u);
-  const GltfPlacement& placement = scene.placements[0];
+  const PlacedMesh& placement = scene.placements[0];
   ASSERT_TRUE(placement.motion);
   const Vec3d start(ends_of(*scene.meshes[placement.mesh].mesh)[3][1]);
   EXPECT_EQ(start, (Vec3d{2 * 4 + 2, 2 * 16, 2 * (1 + 0.5 * 2)}));

@@ -12,10 +12,11 @@ struct MeshOptions {
   bool weld = false;  ///< make one of all vertices at the same place, -0 as 0
 };
 
-/// Reads the mesh file `path`: .obj with the MTL files that it names, .ply, .stl, .off, .gltf or .glb, in
-/// upper or lower case, and the same with .gz behind it, packed by gzip. Of glTF it reads what the default
-/// scene shows, as one mesh in world space. Throws Error with the file, and the line or byte, for what the
-/// format does not allow, with ErrorKind::io if the file cannot be read, and for names of other formats.
+/// Reads the mesh file `path`: .obj with the MTL files that it names, .ply, .stl, .off, .3mf, .gltf or .glb,
+/// in upper or lower case, and the same with .gz behind it, packed by gzip. Of 3MF it reads what the build
+/// places, of glTF what the default scene shows, as one mesh in world space. Throws Error with the file, and
+/// the line or byte, for what the format does not allow, with ErrorKind::io if the file cannot be read, and
+/// for names of other formats.
 MeshFile load_mesh(const std::string& path, const MeshOptions& options = {});
 
 /// All that is wrong in a file for which load_mesh threw an Error: all lines of an OBJ file, else nothing.

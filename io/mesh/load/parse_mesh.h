@@ -9,7 +9,7 @@
 namespace oktett {
 
 /// Whether files of the format of `path` are read in two steps: not those of glTF, whose numbers stand in the
-/// file as they are in memory.
+/// file as they are in memory, and of 3MF, which a library reads.
 bool can_parse_mesh(const std::string& path);
 
 /// What the mesh file `path` says by itself. Throws Error as load_mesh does.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/gltf/gltf.h"
+#include "io/mesh/load/load_file_scene.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/mesh_output.h"
 #include "io/mesh/strokes.h"
@@ -198,13 +199,13 @@ const ConvertedFormat& written_format(const std::string& path, const ConvertOpti
   return *format;
 }
 
-/// What glTF says beside meshes.
-void note_scene(const GltfScene& scene, MeshLosses& losses) {
+/// What glTF and 3MF say beside meshes.
+void note_scene(const FileScene& scene, MeshLosses& losses) {
   if (scene.placements.size() > scene.meshes.size())
     losses.push_back("changed: " + count_of(scene.placements.size() - scene.meshes.size(), "instance") +
                      " of meshes that are shown before, written as further triangles");
   if (scene.placements.size() > 1 ||
-      std::ranges::any_of(scene.placements, [](const GltfPlacement& p) { return !p.name.empty(); }))
+      std::ranges::any_of(scene.placements, [](const PlacedMesh& p) { return !p.name.empty(); }))
     losses.push_back("lost: names of " + count_of(scene.placements.size(), "object") +
                      ", which become one mesh");
   if (scene.camera) losses.push_back("lost: cameras");
@@ -212,7 +213,7 @@ void note_scene(const GltfScene& scene, MeshLosses& losses) {
 }
 
 MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses& losses) {
-  if (!is_gltf_file(path)) {
+  if (!has_file_scene(path)) {
     if (options.gltf.is_for_gltf()) throw Error(Location{path}, "a time and variants are for glTF files");
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
@@ -221,7 +222,7 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
-  GltfScene scene = load_gltf_scene(path, options.gltf);
+  FileScene scene = load_file_scene(path, options.gltf);
   note_scene(scene, losses);
   MeshFile file = one_mesh(path, std::move(scene));
   if (options.weld) weld_positions(file.mesh);

@@ -7,13 +7,13 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "io/gltf/gltf.h"
+#include "io/mesh/file_scene.h"
 #include "io/mesh/reading.h"
 
 namespace oktett {
 namespace {
 
-/// Elements that nodes which show the same mesh may add: corners of four million triangles.
+/// Elements that further places of the same mesh may add: corners of four million triangles.
 constexpr std::uint64_t kMostAdded = 12'000'000;
 
 /// Elements in the columns of a mesh.
@@ -27,15 +27,15 @@ struct Sizes {
   std::uint64_t most() const { return std::max({positions, normals, uvs, corners}); }
 };
 
-Sizes once(const GltfScene& scene) {
+Sizes once(const FileScene& scene) {
   Sizes sizes;
-  for (const GltfSharedMesh& shared : scene.meshes) sizes.add(*shared.mesh);
+  for (const SharedMesh& shared : scene.meshes) sizes.add(*shared.mesh);
   return sizes;
 }
 
-Sizes placed(const GltfScene& scene) {
+Sizes placed(const FileScene& scene) {
   Sizes sizes;
-  for (const GltfPlacement& placement : scene.placements) sizes.add(*scene.meshes[placement.mesh].mesh);
+  for (const PlacedMesh& placement : scene.placements) sizes.add(*scene.meshes[placement.mesh].mesh);
   return sizes;
 }
 
@@ -51,8 +51,8 @@ void for_all(std::size_t count, const F& f) {
 /// or zero.
 class AttributeJoining {
  public:
-  AttributeJoining(const GltfScene& scene, const TriangleMesh& whole) : scene_(scene), whole_(whole) {
-    for (const GltfPlacement& placement : scene.placements) {
+  AttributeJoining(const FileScene& scene, const TriangleMesh& whole) : scene_(scene), whole_(whole) {
+    for (const PlacedMesh& placement : scene.placements) {
       shown_.emplace(placement.mesh);
       for (const MeshAttribute& a : scene.meshes[placement.mesh].mesh->attributes)
         if (known_.insert(a.name).second) names_.push_back(a.name);
@@ -75,7 +75,7 @@ class AttributeJoining {
       room_ -= size;
       joined.floats = Column<float>(size, name == kColorAttribute ? 1.0f : 0.0f);
       Sizes before;
-      for (const GltfPlacement& placement : scene_.placements) {
+      for (const PlacedMesh& placement : scene_.placements) {
         const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
         if (const MeshAttribute* const a = of_mesh_[placement.mesh])
           copy(part, *a, placement.to_world.determinant() < 0, before, joined);
@@ -115,7 +115,7 @@ class AttributeJoining {
     });
   }
 
-  const GltfScene& scene_;
+  const FileScene& scene_;
   const TriangleMesh& whole_;
   std::set<std::uint32_t> shown_;
   std::set<std::string> known_;
@@ -127,7 +127,7 @@ class AttributeJoining {
 /// Appends meshes to one.
 class Joining {
  public:
-  Joining(const std::string& path, const GltfScene& scene) : path_(path), scene_(scene) {
+  Joining(const std::string& path, const FileScene& scene) : path_(path), scene_(scene) {
     const Sizes sizes = placed(scene);
     check_limit(path, sizes.positions, "vertices", 0xfffffffeu);
     check_limit(path, sizes.corners / 3, "triangles", 0xfffffffeu);
@@ -135,7 +135,7 @@ class Joining {
     mesh_.normals.resize_uninitialized(sizes.normals);
     mesh_.uvs.resize_uninitialized(sizes.uvs);
     const auto any = [&](const auto& has) {
-      return std::ranges::any_of(scene.meshes, [&](const GltfSharedMesh& m) { return has(*m.mesh); });
+      return std::ranges::any_of(scene.meshes, [&](const SharedMesh& m) { return has(*m.mesh); });
     };
     if (any([](const TriangleMesh& m) { return !m.tangents.empty(); })) {
       mesh_.tangents.resize_uninitialized(sizes.normals);
@@ -152,7 +152,7 @@ class Joining {
 
   TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots) {
     if (!slots.empty()) mesh_.material_slots.resize_uninitialized(mesh_.triangle_count());
-    for (const GltfPlacement& placement : scene_.placements) {
+    for (const PlacedMesh& placement : scene_.placements) {
       const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
       move_points(placement, part);
       copy_corners(placement.to_world.determinant() < 0, part);
@@ -169,7 +169,7 @@ class Joining {
   }
 
  private:
-  void move_points(const GltfPlacement& placement, const TriangleMesh& part) {
+  void move_points(const PlacedMesh& placement, const TriangleMesh& part) {
     const Affine& map = placement.to_world;
     const bool is_identity = map.is_identity();
     const Affine inverse = map.inverse();
@@ -197,7 +197,7 @@ class Joining {
       const Vec3f& p = mesh_.positions[before_.positions + i];
       for (const float x : {p.x, p.y, p.z})
         if (!is_coordinate(x))
-          throw Error(Location{path_}, "node '" + placement.name + "': " + bad_coordinate(x));
+          throw Error(Location{path_}, "object '" + placement.name + "': " + bad_coordinate(x));
     }
   }
 
@@ -218,7 +218,7 @@ class Joining {
   }
 
   const std::string& path_;
-  const GltfScene& scene_;
+  const FileScene& scene_;
   TriangleMesh mesh_;
   Sizes before_;
 };
@@ -226,9 +226,9 @@ class Joining {
 /// Gives each material that is shown a slot of the whole mesh.
 class Slots {
  public:
-  Slots(const std::string& path, GltfScene& scene)
+  Slots(const std::string& path, FileScene& scene)
       : path_(path), scene_(scene), slot_of_(scene.materials.size() + 1, kNoId) {
-    for (const GltfSharedMesh& shared : scene.meshes) {
+    for (const SharedMesh& shared : scene.meshes) {
       std::vector<std::uint16_t>& own = own_.emplace_back();
       for (const std::uint32_t material : shared.slots) own.push_back(slot(material));
     }
@@ -253,7 +253,7 @@ class Slots {
   }
 
   const std::string& path_;
-  GltfScene& scene_;
+  FileScene& scene_;
   std::vector<std::uint32_t> slot_of_;  ///< the last one is that of no material
   std::vector<std::vector<std::uint16_t>> own_;
 };
@@ -261,7 +261,7 @@ class Slots {
 }  // namespace
 
 /// All that the placements of a scene show.
-static TriangleMesh joined(const std::string& path, GltfScene& scene, const Slots& slots) {
+static TriangleMesh joined(const std::string& path, FileScene& scene, const Slots& slots) {
   const bool is_whole =
       scene.placements.size() == 1 && scene.meshes.size() == 1 && scene.placements[0].to_world.is_identity();
   if (is_whole) return std::move(*scene.meshes[0].mesh);
@@ -271,26 +271,26 @@ static TriangleMesh joined(const std::string& path, GltfScene& scene, const Slot
   return mesh;
 }
 
-bool can_be_one_mesh(const GltfScene& scene) {
+bool can_be_one_mesh(const FileScene& scene) {
   return placed(scene).most() <= once(scene).most() + kMostAdded;
 }
 
-MeshFile one_mesh(const std::string& path, GltfScene scene) {
+MeshFile one_mesh(const std::string& path, FileScene scene) {
   if (!can_be_one_mesh(scene))
     throw Error(Location{path},
-                "its nodes show " + std::to_string(placed(scene).corners / 3) + " triangles, of which " +
+                "its objects show " + std::to_string(placed(scene).corners / 3) + " triangles, of which " +
                     std::to_string(once(scene).corners / 3) +
                     " are different; too many for one mesh, but 'include' keeps them as instances");
   MeshFile file;
   Slots slots(path, scene);
-  std::vector<GltfPlacement> all = std::move(scene.placements);
+  std::vector<PlacedMesh> all = std::move(scene.placements);
   for (const bool strokes : {false, true}) {
     scene.placements.clear();
     std::ranges::copy_if(all, std::back_inserter(scene.placements),
-                         [&](const GltfPlacement& p) { return scene.meshes[p.mesh].is_strokes == strokes; });
+                         [&](const PlacedMesh& p) { return scene.meshes[p.mesh].is_strokes == strokes; });
     (strokes ? file.strokes : file.mesh) = joined(path, scene, slots);
   }
-  const bool has_materials = std::ranges::any_of(scene.meshes, [](const GltfSharedMesh& m) {
+  const bool has_materials = std::ranges::any_of(scene.meshes, [](const SharedMesh& m) {
     return std::ranges::any_of(m.slots, [](auto s) { return s != kNoId; });
   });
   if (has_materials) {

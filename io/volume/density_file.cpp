@@ -1,4 +1,4 @@
-#include "io/scene/density_file.h"
+#include "io/volume/density_file.h"
 
 #include <fmt/format.h>
 

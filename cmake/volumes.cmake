@@ -1,0 +1,15 @@
+# What reads densities in OpenVDB files, see io/volume/vdb_file.h: a shared library that is loaded with the first such file.
+option(OKTETT_OPENVDB "Read OpenVDB files of densities, if the library is found" ON)
+if(OKTETT_OPENVDB)
+  find_path(OKTETT_OPENVDB_INCLUDE openvdb/openvdb.h)
+  find_library(OKTETT_OPENVDB_LIBRARY openvdb)
+  mark_as_advanced(OKTETT_OPENVDB_INCLUDE OKTETT_OPENVDB_LIBRARY)
+  if(OKTETT_OPENVDB_INCLUDE AND OKTETT_OPENVDB_LIBRARY AND TARGET Imath::Imath)
+    add_library(oktett_openvdb INTERFACE)
+    target_include_directories(oktett_openvdb SYSTEM INTERFACE ${OKTETT_OPENVDB_INCLUDE})
+    target_link_libraries(oktett_openvdb INTERFACE ${OKTETT_OPENVDB_LIBRARY} Imath::Imath TBB::tbb)
+    oktett_io_library(oktett_volumes io/volume/vdb_file.cpp OKTETT_VOLUME_LIBRARY
+      io/volume/openvdb/read_vdb.cpp core/error.cpp core/math.cpp core/pages.cpp core/transform.cpp)
+    target_link_libraries(oktett_volumes PRIVATE oktett_openvdb)
+  endif()
+endif()

@@ -1,0 +1,168 @@
+/// \file Reads densities with OpenVDB. The shared library liboktett_volumes.
+
+#include <fmt/format.h>
+// Statics of its templates must be those of OpenVDB's own library, also where all else is hidden.
+#pragma GCC visibility push(default)
+#include <openvdb/Grid.h>
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Dense.h>
+#pragma GCC visibility pop
+
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "io/volume/vdb_file.h"
+
+namespace oktett {
+namespace {
+
+constexpr float kMostDensity = 1e9f;
+/// Beyond it, indices of voxels are not computed with.
+constexpr std::int64_t kMostIndex = std::int64_t{1} << 30;
+
+/// A name of a file for a message: OpenVDB gives any bytes.
+std::string quoted(const std::string& name) {
+  std::string text = "'";
+  for (const char c : name.substr(0, 40)) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return text + (name.size() > 40 ? "...'" : "'");
+}
+
+class VdbReading {
+ public:
+  VdbReading(const std::string& path, const std::string& opened) : path_(path), file_(opened) {
+    file_.open(/*delayLoad=*/false);
+  }
+
+  VdbDensities run(const std::string& wanted) {
+    const std::string name = choose(wanted);
+    const openvdb::GridBase::Ptr grid = file_.readGrid(name);
+    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
+      fail("the grid " + quoted(name) + " is a level set (distances from a surface); expected densities");
+    if (!grid->transform().isLinear())
+      fail("the grid " + quoted(name) + " is a frustum; expected a grid with an affine transform");
+    if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)) return dense(name, *floats);
+    if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid))
+      return dense(name, *doubles);
+    fail("the grid " + quoted(name) + " is of type " + grid->valueType() + "; expected float");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw Error(Location{path_}, message); }
+
+  static bool is_scalar(const openvdb::GridBase& grid) {
+    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
+  }
+
+  /// The name of the grid to read. Grids of types that are not known here are passed over.
+  std::string choose(const std::string& wanted) {
+    std::vector<std::string> scalars;
+    std::string all;
+    for (auto it = file_.beginName(); it != file_.endName(); ++it) {
+      const std::string name = it.gridName();
+      if (name == (wanted.empty() ? "density" : wanted)) return name;
+      std::string type = "of an unknown type";
+      try {
+        const openvdb::GridBase::ConstPtr grid = file_.readGridMetadata(name);
+        type = grid->valueType();
+        if (is_scalar(*grid)) scalars.push_back(name);
+      } catch (const openvdb::Exception&) {}
+      if (all.size() < 400) all += (all.empty() ? "" : ", ") + quoted(name) + " (" + type + ")";
+    }
+    if (wanted.empty() && scalars.size() == 1) return scalars[0];
+    const std::string has = all.empty() ? "the file has none" : "the file has " + all;
+    if (wanted.empty() && !scalars.empty())
+      fail("no grid is called 'density', and several hold floats; expected 'grid_name': " + has);
+    fail(wanted.empty() ? "expected a grid of floats; " + has : "no grid " + quoted(wanted) + "; " + has);
+  }
+
+  template <class Grid>
+  VdbDensities dense(const std::string& name, const Grid& grid) const {
+    VdbDensities out;
+    openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    if (box.empty()) box = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(0));
+    std::uint64_t count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t first = box.min()[axis], last = box.max()[axis];
+      if (first < -kMostIndex || last > kMostIndex)
+        fail("the grid " + quoted(name) + " has voxels at indices beyond 2^30");
+      const auto side = static_cast<std::uint64_t>(last - first + 3);
+      count *= side;
+      if (side > kMostDensitySide || count > kMostDensities)
+        fail(fmt::format(
+            "the grid {} fills {} x {} x {} voxels; expected at most {} along an edge and {} in all",
+            quoted(name), box.dim()[0], box.dim()[1], box.dim()[2], kMostDensitySide - 2, kMostDensities));
+      out.size[axis] = static_cast<std::uint32_t>(side);
+    }
+    box.expand(1);
+    out.values.resize_uninitialized(count);
+    openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> values(box, out.values.data());
+    openvdb::tools::copyToDense(grid, values);
+    check(name, out);
+    out.place = place_of(grid.transform(), box, out.size);
+    return out;
+  }
+
+  void check(const std::string& name, VdbDensities& out) const {
+    for (std::size_t i = 0; i < out.values.size(); ++i) {
+      float& value = out.values[i];
+      if (!(std::abs(value) <= kMostDensity))
+        fail(fmt::format("a value of the grid {} is {:g}; expected a density from 0 to {:g}", quoted(name),
+                         value, kMostDensity));
+      if (value >= 0) continue;
+      value = 0;
+      ++out.negative;
+    }
+  }
+
+  /// The map from the unit cube between the centres of the outer voxels of `box` to the space of the file.
+  static Affine place_of(const openvdb::math::Transform& transform, const openvdb::CoordBBox& box,
+                         const std::uint32_t (&size)[3]) {
+    // OpenVDB multiplies rows by matrices from the right.
+    const openvdb::math::Mat4d m = transform.baseMap()->getAffineMap()->getMat4();
+    Affine map;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column)
+        map.m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = m(column, row);
+    }
+    const openvdb::Coord& lo = box.min();
+    return map * Affine::translation({double(lo.x()), double(lo.y()), double(lo.z())}) *
+           Affine::scaling({size[0] - 1.0, size[1] - 1.0, size[2] - 1.0});
+  }
+
+  const std::string& path_;
+  openvdb::io::File file_;
+};
+
+class OpenVdbLibrary final : public VolumeLibrary {
+ public:
+  OpenVdbLibrary() { openvdb::initialize(); }
+
+  VdbDensities read(const std::string& path, const std::string& opened,
+                    const std::string& name) const override {
+    try {
+      return VdbReading(path, opened).run(name);
+    } catch (const Error&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw Error(Location{path}, std::string("cannot be read as an OpenVDB file: ") + error.what());
+    }
+  }
+};
+
+}  // namespace
+}  // namespace oktett
+
+extern "C" __attribute__((visibility("default"))) const oktett::VolumeLibrary* oktett_volume_library();
+const oktett::VolumeLibrary* oktett_volume_library() {
+  static const oktett::OpenVdbLibrary library;
+  return &library;
+}
