@@ -237,8 +237,9 @@ class FileReader {
     if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) return;
     if (has_file_scene(path)) {
       seen_.push_back(canonical);
-      GltfOptions options = load_.gltf;
-      if (!is_gltf_file(path)) options = {.stroke_width = options.stroke_width};
+      GltfOptions options;
+      if (is_gltf_file(path)) options = load_.gltf;
+      options.stroke_width = load_.gltf.stroke_width;
       add_file_scene(path, options, load_file_scene(path, options), load_.scene);
       load_.prototype_levels.resize(load_.scene.prototypes.size());
       return;
