@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/math.h"
 #include "render/light/environment_picture.h"
 #include "tests/render/test_scenes.h"
 
