@@ -46,41 +46,41 @@ InsideRule rule_of(const std::string& name, const char* argument) {
   throw py::value_error(std::string(argument) + ": expected 'crossings' or 'winding', not '" + name + "'");
 }
 
-py::array ask_inside(SceneStore& scene, py::handle given, const std::string& name) {
-  const InsideRule rule = rule_of(name, "rule");
+/// An answer for each point: ask(world, points, begin, end, answers) gives those of the points [begin, end).
+template <class T, class Ask>
+py::array ask_each(SceneStore& scene, py::handle given, const Ask& ask) {
   const FloatArray points = float_rows(given, "points", 3);
-  py::array_t<bool> result(row_shape(points));
-  auto* const answers = reinterpret_cast<std::uint8_t*>(result.mutable_data());
+  py::array_t<T> result(row_shape(points));
+  T* const answers = result.mutable_data();
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
-    inside(*world, points.data(), begin, end, rule, answers);
-  });
+  run_in_pieces(static_cast<std::size_t>(points.size() / 3),
+                [&](std::size_t begin, std::size_t end) { ask(*world, points.data(), begin, end, answers); });
   return result;
 }
 
-py::array ask_winding_number(SceneStore& scene, py::handle given, double error) {
+py::array ask_inside(SceneStore& scene, py::handle points, const std::string& name) {
+  const InsideRule rule = rule_of(name, "rule");
+  return ask_each<bool>(scene, points,
+                        [&](const World& world, const float* rows, auto begin, auto end, bool* out) {
+                          inside(world, rows, begin, end, rule, reinterpret_cast<std::uint8_t*>(out));
+                        });
+}
+
+py::array ask_winding_number(SceneStore& scene, py::handle points, double error) {
   if (!(error >= 0x1p-20))
     throw py::value_error("error: expected a number of at least 2^-20, not " + std::to_string(error));
-  const FloatArray points = float_rows(given, "points", 3);
-  py::array_t<float> result(row_shape(points));
-  float* const numbers = result.mutable_data();
-  const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
-    winding_numbers(*world, points.data(), begin, end, error, numbers);
-  });
-  return result;
+  return ask_each<float>(scene, points,
+                         [&](const World& world, const float* rows, auto begin, auto end, float* out) {
+                           winding_numbers(world, rows, begin, end, error, out);
+                         });
 }
 
-py::array ask_signed_distance(SceneStore& scene, py::handle given, const std::string& name) {
+py::array ask_signed_distance(SceneStore& scene, py::handle points, const std::string& name) {
   const InsideRule rule = rule_of(name, "sign");
-  const FloatArray points = float_rows(given, "points", 3);
-  py::array_t<float> result(row_shape(points));
-  float* const distances = result.mutable_data();
-  const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
-    signed_distances(*world, points.data(), begin, end, rule, distances);
-  });
-  return result;
+  return ask_each<float>(scene, points,
+                         [&](const World& world, const float* rows, auto begin, auto end, float* out) {
+                           signed_distances(world, rows, begin, end, rule, out);
+                         });
 }
 
 constexpr const char* kClosestPointDoc = R"(The point of all surfaces that is nearest to each point.
