@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -13,7 +14,7 @@
 #include "io/mesh/reading.h"
 #include "io/mesh/strokes.h"
 #include "io/text/files.h"
-#include "render/material.h"
+#include "render/append_materials.h"
 
 namespace oktett {
 
@@ -31,23 +32,14 @@ void check_textures(MeshFile& file) {
 }
 
 std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene) {
-  const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
   scene.texture_places.resize(scene.textures.size());
   scene.material_places.resize(scene.materials.size());
   std::ranges::move(file.texture_places, std::back_inserter(scene.texture_places));
   std::ranges::move(file.material_places, std::back_inserter(scene.material_places));
-  std::move(file.textures.begin(), file.textures.end(), std::back_inserter(scene.textures));
-  const auto first_medium = static_cast<std::uint32_t>(scene.media.size());
-  std::move(file.media.begin(), file.media.end(), std::back_inserter(scene.media));
-  std::vector<std::uint32_t> indices;
-  for (Material& material : file.materials) {
-    if (material.interior != kNoId) material.interior += first_medium;
-    for_each_texture(material, [first_texture](std::uint32_t& texture) {
-      if (texture != kNoId) texture += first_texture;
-    });
-    indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
-    scene.materials.push_back(std::move(material));
-  }
+  std::vector<std::uint32_t> indices(file.materials.size());
+  const std::uint32_t first =
+      append_materials(std::move(file.materials), std::move(file.textures), std::move(file.media), scene);
+  std::iota(indices.begin(), indices.end(), first);
   return indices;
 }
 

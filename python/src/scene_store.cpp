@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "core/error.h"
+#include "render/append_materials.h"
 #include "render/look/default_look.h"
 #include "render/material.h"
 
@@ -129,21 +130,14 @@ FileContents AddedMesh::material_contents() const {
 }
 
 std::uint32_t SceneStore::append_material(SceneRead read) {
-  Material& m = read.scene.materials.at(0);
-  const auto first_texture = static_cast<std::uint32_t>(scene_.textures.size());
-  const auto first_medium = static_cast<std::uint32_t>(scene_.media.size());
-  for_each_texture(m, [&](std::uint32_t& texture) {
-    if (texture != kNoId) texture += first_texture;
-  });
-  if (m.interior != kNoId) m.interior += first_medium;
-  m.name.clear();
-  if (!read.scene.textures.empty() && read.textures != nullptr)
-    added_textures_.push_back({first_texture, std::move(read.textures)});
-  std::ranges::move(read.scene.textures, std::back_inserter(scene_.textures));
-  std::ranges::move(read.scene.media, std::back_inserter(scene_.media));
-  std::ranges::move(read.scene.warnings, std::back_inserter(scene_.warnings));
-  scene_.materials.push_back(std::move(m));
-  return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+  Scene& other = read.scene;
+  other.materials.resize(1);
+  other.materials[0].name.clear();
+  if (!other.textures.empty() && read.textures != nullptr)
+    added_textures_.push_back({scene_.textures.size(), std::move(read.textures)});
+  std::ranges::move(other.warnings, std::back_inserter(scene_.warnings));
+  return append_materials(std::move(other.materials), std::move(other.textures), std::move(other.media),
+                          scene_);
 }
 
 std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
