@@ -2,13 +2,17 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "core/error.h"
+#include "core/far_mesh.h"
 #include "core/parallel.h"
 #include "io/mesh/file_scene.h"
 #include "io/mesh/reading.h"
+#include "io/mesh/rounding.h"
 
 namespace oktett {
 namespace {
@@ -150,11 +154,12 @@ class Joining {
     if (sizes.uvs > 0) mesh_.uv_indices.resize_uninitialized(sizes.corners);
   }
 
-  TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots) {
+  /// Adds to `warnings`.
+  TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots, std::vector<Warning>& warnings) {
     if (!slots.empty()) mesh_.material_slots.resize_uninitialized(mesh_.triangle_count());
     for (const PlacedMesh& placement : scene_.placements) {
       const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
-      move_points(placement, part);
+      move_normals_and_uvs(placement, part);
       copy_corners(placement.to_world.determinant() < 0, part);
       if (!slots.empty()) {
         const std::vector<std::uint16_t>& own = slots[placement.mesh];
@@ -165,18 +170,38 @@ class Joining {
       }
       before_.add(part);
     }
+    move_positions({});
+    if (const std::optional<Vec3d> centre = far_centre(mesh_.positions, false)) {
+      mesh_.origin = *centre;
+      move_positions(*centre);
+    }
+    std::string words = find_rounding(mesh_, [this](const Vec3d& centre) { move_positions(centre); });
+    if (!words.empty()) warnings.push_back({Location{path_}, std::move(words)});
     return std::move(mesh_);
   }
 
  private:
-  void move_points(const PlacedMesh& placement, const TriangleMesh& part) {
+  /// Less `centre`.
+  void move_positions(const Vec3d& centre) {
+    Vec3f* out = mesh_.positions.data();
+    for (const PlacedMesh& placement : scene_.placements) {
+      const Column<Vec3f>& own = scene_.meshes[placement.mesh].mesh->positions;
+      const Affine& map = placement.to_world;
+      const bool stays = map.is_identity() && centre == Vec3d{};
+      for_all(own.size(),
+              [&](std::size_t i) { out[i] = stays ? own[i] : Vec3f(map.point(Vec3d(own[i])) - centre); });
+      for (std::size_t i = 0; i < own.size(); ++i)
+        for (const float x : {out[i].x, out[i].y, out[i].z})
+          if (!is_coordinate(x))
+            throw Error(Location{path_}, "object '" + placement.name + "': " + bad_coordinate(x));
+      out += own.size();
+    }
+  }
+
+  void move_normals_and_uvs(const PlacedMesh& placement, const TriangleMesh& part) {
     const Affine& map = placement.to_world;
     const bool is_identity = map.is_identity();
     const Affine inverse = map.inverse();
-    for_all(part.positions.size(), [&](std::size_t i) {
-      Vec3f& out = mesh_.positions[before_.positions + i];
-      out = is_identity ? part.positions[i] : Vec3f(map.point(Vec3d(part.positions[i])));
-    });
     for_all(part.normals.size(), [&](std::size_t i) {
       Vec3f& out = mesh_.normals[before_.normals + i];
       out = part.normals[i];
@@ -193,12 +218,6 @@ class Joining {
       const Vec3f t(map.vector(Vec3d(Vec3f{own[0], own[1], own[2]})));
       mesh_.tangents[before_.normals + i] = is_identity ? own : std::array{t.x, t.y, t.z, own[3] * side};
     });
-    for (std::size_t i = 0; i < part.positions.size() && !is_identity; ++i) {
-      const Vec3f& p = mesh_.positions[before_.positions + i];
-      for (const float x : {p.x, p.y, p.z})
-        if (!is_coordinate(x))
-          throw Error(Location{path_}, "object '" + placement.name + "': " + bad_coordinate(x));
-    }
   }
 
   /// A mirror turns the corners around, so that the front stays the front.
@@ -264,9 +283,13 @@ class Slots {
 static TriangleMesh joined(const std::string& path, FileScene& scene, const Slots& slots) {
   const bool is_whole =
       scene.placements.size() == 1 && scene.meshes.size() == 1 && scene.placements[0].to_world.is_identity();
-  if (is_whole) return std::move(*scene.meshes[0].mesh);
+  if (is_whole) {
+    TriangleMesh mesh = std::move(*scene.meshes[0].mesh);
+    if (const std::optional<Vec3d> centre = far_centre(mesh.positions, true)) take_off(*centre, mesh);
+    return mesh;
+  }
   if (scene.placements.empty()) return {};
-  TriangleMesh mesh = Joining(path, scene).run(slots.numbers());
+  TriangleMesh mesh = Joining(path, scene).run(slots.numbers(), scene.warnings);
   mesh.attributes = AttributeJoining(scene, mesh).run(path, scene.warnings);
   return mesh;
 }

@@ -10,8 +10,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/far_mesh.h"
 #include "core/phase.h"
-#include "io/mesh/recentre.h"
+#include "io/mesh/rounding.h"
 #include "io/mesh/strokes.h"
 #include "io/obj/parsed_obj.h"
 #include "io/text/file_content.h"
@@ -36,6 +37,7 @@ class ObjLoad {
     read_all_faces();
     assign_slots(chunks_, text_.data(), obj_);
     stop_at_first_failure();
+    note_rounding();
     drop_unused_columns();
     take_colors();
     note_skipped();
@@ -162,10 +164,20 @@ class ObjLoad {
     if (first_failure()) return;
     const std::optional<Vec3d> centre = far_centre(obj_.mesh.positions, false);
     if (!centre) return;
-    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
-      if (chunks_[i].counts.positions > 0) read_positions_from(*centre, chunks_[i], obj_.mesh);
-    });
+    read_positions_from(*centre);
     obj_.mesh.origin = *centre;
+  }
+
+  void read_positions_from(const Vec3d& centre) {
+    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
+      if (chunks_[i].counts.positions > 0) oktett::read_positions_from(centre, chunks_[i], obj_.mesh);
+    });
+  }
+
+  void note_rounding() {
+    std::string words =
+        find_rounding(obj_.mesh, [this](const Vec3d& centre) { read_positions_from(centre); });
+    if (!words.empty()) obj_.notices.push_back({0, std::move(words), {}});
   }
 
   /// After all vertices, because how a polygon is cut depends on them, and they may come behind it.

@@ -7,9 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/far_mesh.h"
 #include "core/phase.h"
 #include "io/mesh/polygon.h"
-#include "io/mesh/recentre.h"
+#include "io/mesh/rounding.h"
 #include "io/text/file_content.h"
 #include "io/text/number.h"
 
@@ -35,6 +36,7 @@ class OffLoad {
       read_vertices();
       recentre();
       read_faces();
+      note_rounding();
     } catch (const MeshFailure& failure) {
       fail_at_line(path_, text_, failure);
     }
@@ -173,9 +175,24 @@ class OffLoad {
     const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false);
     if (!centre) return;
     parsed_.mesh.origin = *centre;
-    next_ = vertices_;
     oddities_ = {};
+    read_vertices_again();
+  }
+
+  void read_vertices_again() {
+    next_ = vertices_;
     read_vertices();
+  }
+
+  void note_rounding() {
+    const Vec3d origin = parsed_.mesh.origin;
+    const MeshOddities oddities = oddities_;
+    std::string words = find_rounding(parsed_.mesh, [this](const Vec3d& centre) {
+      parsed_.mesh.origin = centre;
+      read_vertices_again();
+    });
+    parsed_.mesh.origin = origin, oddities_ = oddities;
+    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
   }
 
   /// Three or four numbers: the rest of the line tells.

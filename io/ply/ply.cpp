@@ -12,8 +12,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/far_mesh.h"
 #include "core/phase.h"
-#include "io/mesh/recentre.h"
+#include "io/mesh/rounding.h"
 #include "io/ply/body.h"
 #include "io/text/file_content.h"
 
@@ -137,6 +138,7 @@ class PlyLoad {
       allocate();
       read_vertices();
       read_faces();
+      note_rounding();
       read_edges();
     } catch (const MeshFailure& failure) {
       const bool is_line = in_header_ || header_.format == PlyFormat::ascii || failure.where < header_.body;
@@ -394,30 +396,42 @@ class PlyLoad {
   }
 
   void read_vertices() {
+    if (vertices_.element->count == 0) return;
+    read_vertices_from({});
+    TriangleMesh& mesh = parsed_.mesh;
+    const std::optional<Vec3d> centre = far_centre(mesh.positions, !has_digits());
+    if (!centre) return;
+    mesh.origin = *centre;
+    read_vertices_from(*centre);
+  }
+
+  /// Positions less `centre`.
+  void read_vertices_from(const Vec3d& centre) {
     TriangleMesh& mesh = parsed_.mesh;
     PlyVertexColumns columns;
     columns.step = {3, 3, 3, 3, 3, 3, 2, 2};
+    columns.centre = centre;
     const auto place = [&](std::size_t role, std::size_t size, void* column) {
       for (std::size_t k = 0; k < size; ++k) columns.base[role + k] = static_cast<float*>(column) + k;
     };
-    if (vertices_.element->count == 0) return;
     place(0, 3, mesh.positions.data());
     if (vertices_.has_normals) place(3, 3, mesh.normals.data());
     if (vertices_.has_uvs && !corner_uvs_) place(6, 2, mesh.uvs.data());
-    const auto read = [&](PlyChunk& chunk) {
+    for_each_chunk(vertices_, [&](PlyChunk& chunk) {
       body_->read_vertices(vertices_, chunk, columns);
       chunk.oddities = {};
       if (!vertices_.has_normals) return;
       for (std::uint64_t i = chunk.first; i < chunk.first + chunk.records; ++i)
         if (!is_finite(mesh.normals[i])) chunk.oddities.bad_normals.add(vertices_.element->where);
-    };
-    for_each_chunk(vertices_, read);
+    });
     stop_at_first_failure();
-    const std::optional<Vec3d> centre = far_centre(mesh.positions, !has_digits());
-    if (!centre) return;
-    mesh.origin = columns.centre = *centre;
-    for_each_chunk(vertices_, read);
-    stop_at_first_failure();
+  }
+
+  void note_rounding() {
+    if (vertices_.element->count == 0 || !has_digits()) return;
+    std::string words =
+        find_rounding(parsed_.mesh, [this](const Vec3d& centre) { read_vertices_from(centre); });
+    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
   }
 
   /// Whether positions may have more digits than floats.

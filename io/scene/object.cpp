@@ -7,6 +7,7 @@
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
+#include "render/recentre.h"
 
 namespace oktett {
 
@@ -154,12 +155,12 @@ class ObjectReader {
     for (const MeshShape& each : strokes) {
       Object own = object;
       own.shape = each;
-      place_far_mesh(own);
+      place_mesh(own);
       out_.push_back(std::move(own));
     }
     const auto* const mesh = std::get_if<MeshShape>(&object.shape);
     if (mesh != nullptr && mesh->mesh->triangle_count() == 0) return;
-    place_far_mesh(object);
+    place_mesh(object);
     require_inside(object);
     out_.push_back(std::move(object));
   }
@@ -180,18 +181,6 @@ class ObjectReader {
         entry.stroke_shapes(width > 0 ? width : load_.gltf.stroke_width, node.where(), warnings);
     for (const Warning& warning : warnings) load_.warn(warning.where, warning.message);
     return strokes;
-  }
-
-  /// Positions of a mesh that lies far from the origin count from a place of their own.
-  static void place_far_mesh(Object& object) {
-    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
-    if (mesh == nullptr || mesh->mesh->origin == Vec3d{}) return;
-    const Affine there = Affine::translation(mesh->mesh->origin);
-    object.transform = object.transform * there;
-    if (object.motion == nullptr) return;
-    Motion motion = *object.motion;
-    motion.factors.push_back({{0, there}});
-    object.motion = std::make_shared<const Motion>(std::move(motion));
   }
 
   void read_transform_of(const YamlNode& node, bool is_group, const Surroundings& outer,

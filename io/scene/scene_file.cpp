@@ -18,7 +18,6 @@
 #include "io/ply/ply.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
-#include "io/scene/recentre.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
@@ -26,6 +25,7 @@
 #include "io/text/files.h"
 #include "render/look/default_look.h"
 #include "render/look/up_direction.h"
+#include "render/recentre.h"
 #include "render/scene.h"
 
 namespace oktett {
@@ -272,6 +272,12 @@ void expect_readable(const std::string& path) {
     throw Error(Location{path, 0, 0}, reason, ErrorKind::io);
 }
 
+/// A scene far from the origin counts from another place.
+void move_near(Scene& scene) {
+  recentre(scene);
+  std::ranges::move(find_lost_digits(scene), std::back_inserter(scene.warnings));
+}
+
 /// A scene of its own: path tracing, which its materials are made for.
 Scene scene_from_file(const std::string& path, const GltfOptions& options, FileScene file, const Vec3d& up) {
   Scene scene;
@@ -286,6 +292,7 @@ Scene scene_from_file(const std::string& path, const GltfOptions& options, FileS
     scene.film.width =
         static_cast<std::uint32_t>(std::clamp(std::round(scene.film.height * file.aspect), 1.0, 4096.0));
   add_file_scene(path, options, std::move(file), scene);
+  move_near(scene);
   return scene;
 }
 
@@ -303,7 +310,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   FileReader(load).read(path);
   if (load.errors != nullptr && load.errors->failures() > 0) return;
   if (load.integrator) load.scene.integrator.kind = *load.integrator;
-  recentre(load.scene);
+  move_near(load.scene);
   warn_of_energy(load.scene);
   warn_of_attributes(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
@@ -374,10 +381,10 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
         Warning{Location{path, 0, 0}, "no triangle of the mesh has an area: there is nothing to be seen"});
   scene.camera.up = up_of(path, *entry.mesh);
   scene.background = kPlainBackground;
-  scene.origin = entry.mesh->origin;
   const auto add = [&](MeshShape shape) {
     Object object;
     object.shape = std::move(shape);
+    place_mesh(object);
     object.name = std::filesystem::path(without_packing(path)).stem().string();
     object.where = {path, 0, 0};
     show_colors(scene, object);
@@ -388,6 +395,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   if (has_triangles) add({entry.mesh, entry.slot_materials, smooth});
   for (MeshShape& strokes : entry.stroke_shapes(gltf.stroke_width, Location{path}, scene.warnings))
     add(std::move(strokes));
+  recentre(scene);
   return scene;
 }
 

@@ -13,9 +13,10 @@
 
 #include "core/bytes.h"
 #include "core/error.h"
+#include "core/far_mesh.h"
 #include "core/phase.h"
 #include "io/mesh/reading.h"
-#include "io/mesh/recentre.h"
+#include "io/mesh/rounding.h"
 #include "io/text/file_content.h"
 
 namespace oktett {
@@ -350,13 +351,18 @@ class StlLoad {
     std::optional<MeshFailure> first;
     for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
     if (first) read_loosely(*first, {});
-    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false);
-    if (!centre) return;
-    parsed_.mesh.origin = *centre;
-    if (first)
-      read_loosely(*first, *centre);
-    else
-      read_chunks(chunks, *centre);
+    const auto read_again = [&](const Vec3d& centre) {
+      if (first)
+        read_loosely(*first, centre);
+      else
+        read_chunks(chunks, centre);
+    };
+    if (const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false)) {
+      parsed_.mesh.origin = *centre;
+      read_again(*centre);
+    }
+    std::string words = find_rounding(parsed_.mesh, read_again);
+    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
   }
 
   void read_chunks(std::vector<StlChunk>& chunks, const Vec3d& centre) {

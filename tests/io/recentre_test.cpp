@@ -1,6 +1,6 @@
 // Meshes that lie far from the origin keep their details.
 
-#include "io/mesh/recentre.h"
+#include "core/far_mesh.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,9 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "accel/accel.h"
 #include "io/mesh/load/load_mesh.h"
+#include "io/mesh/mesh_output.h"
 #include "io/mesh/save/convert_mesh.h"
 #include "io/scene/scene_file.h"
+#include "render/geometry.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::test::recentre_test {
@@ -166,6 +169,215 @@ TEST(Recentre, CentresAreExactFloats) {
     for (std::size_t k = 0; k < points.size(); ++k)
       EXPECT_EQ(mesh.origin + Vec3d(mesh.positions[k]), Vec3d(points[k]));
   }
+}
+
+// In single precision all corners would fall together.
+TEST(Recentre, ThingsOfCentimetresKeepMicrometres) {
+  const TempDir dir;
+  std::vector<Vec3d> points = ground();
+  for (Vec3d& p : points) p = Vec3d{432100, 5411000, 310} + (p - Vec3d{432100, 5411000, 310}) * 0.0005;
+  for (const auto& [name, text] :
+       {std::pair{"a.obj", obj_of(points)}, std::pair{"a.off", off_of(points)},
+        std::pair{"a.stl", stl_of(points, false)}, std::pair{"a.ply", ply_of(points, "ascii")},
+        std::pair{"b.ply", ply_of(points, "binary_little_endian")}}) {
+    SCOPED_TRACE(name);
+    const MeshFile file = load_mesh(dir.write(name, text));
+    EXPECT_FALSE(file.mesh.origin == Vec3d{});
+    expect_near(corners_of(file.mesh), points, 1e-7);
+    EXPECT_TRUE(file.warnings.empty());
+  }
+}
+
+/// Warnings of a file that say that rounding changed triangles.
+std::size_t count_rounded(const std::vector<Warning>& warnings) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      warnings, [](const Warning& w) { return w.message.find("lie so far apart") != std::string::npos; }));
+}
+
+// A corner that no face has, or a second part, at (0, 0, 0) keeps a centre from being taken off.
+TEST(Recentre, PartsTooFarApartAreAWarning) {
+  const TempDir dir;
+  std::vector<Vec3d> points = ground();
+  for (int i = 0; i < 3; ++i) points.push_back({i % 2 * 1.0, i / 2 * 1.0, 0});
+  const std::pair<std::string, std::string> files[] = {
+      {"a.obj", obj_of(points)},          {"a.off", off_of(points)},
+      {"a.stl", stl_of(points, false)},   {"b.stl", stl_of(points, true)},
+      {"a.ply", ply_of(points, "ascii")}, {"b.ply", ply_of(points, "binary_big_endian")}};
+  // Steps of half a metre are 1 in 200 of the extent of this ground, and a tenth of the extent of the next.
+  for (const auto& [name, text] : files)
+    EXPECT_EQ(count_rounded(load_mesh(dir.write(name, text)).warnings), 0u) << name;
+  std::vector<Vec3d> small;
+  for (const Vec3d& p : points)
+    small.push_back(p.x < 2 ? p : Vec3d{432100, 5411000, 310} + (p - Vec3d{432100, 5411000, 310}) * 0.05);
+  const std::pair<std::string, std::string> lossy[] = {
+      {"c.obj", obj_of(small)},          {"c.off", off_of(small)},
+      {"c.stl", stl_of(small, false)},   {"d.stl", stl_of(small, true)},
+      {"c.ply", ply_of(small, "ascii")}, {"d.ply", ply_of(small, "binary_big_endian")}};
+  for (const auto& [name, text] : lossy) {
+    SCOPED_TRACE(name);
+    const MeshFile file = load_mesh(dir.write(name, text));
+    EXPECT_TRUE(file.mesh.origin == Vec3d{});
+    EXPECT_EQ(count_rounded(file.warnings), 1u);
+    // Its positions are those that are nearest, all the same.
+    for (std::size_t i = 0; i < small.size(); ++i)
+      EXPECT_EQ(file.mesh.positions[file.mesh.indices[i]], Vec3f(small[i]));
+  }
+}
+
+// Digits that the file does not have are not lost by reading it.
+TEST(Recentre, CollapsedFilesAreNoWarning) {
+  const TempDir dir;
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 300; ++i)
+    points.push_back({i < 30 ? i * 1.0 : 432100.0, i < 30 ? i % 7 : 5411000.0, i % 2 * 0.5});
+  EXPECT_EQ(count_rounded(load_mesh(dir.write("a.obj", obj_of(points))).warnings), 0u);
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  points.clear();
+  // A million of such triangles would cover a metre.
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d middle{unit(random), unit(random), unit(random)};
+    for (int k = 0; k < 3; ++k)
+      points.push_back(middle + Vec3d{unit(random), unit(random), unit(random)} * 1e-3);
+  }
+  EXPECT_TRUE(load_mesh(dir.write("b.obj", obj_of(points))).warnings.empty());
+}
+
+/// What rays from above find of a scene whose camera looks straight down at `middle`: t, or infinity.
+std::vector<float> depths(const Scene& scene, const Vec3d& middle) {
+  const World world = build_world(scene);
+  std::vector<float> found;
+  for (int y = -8; y <= 8; ++y)
+    for (int x = -8; x <= 8; ++x) {
+      const Vec3d from = middle - scene.origin + Vec3d{x * 0.21 + 0.013, y * 0.19 + 0.007, 9};
+      found.push_back(closest_hit(*world.accel, Ray{Vec3f(from), 0, {0, 0, -1}, 100}).t);
+    }
+  return found;
+}
+
+/// How many are alike to 1e-5; the others, seen at edges, are not counted.
+std::size_t count_alike(const std::vector<float>& a, const std::vector<float>& b) {
+  std::size_t alike = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) alike += a[i] == b[i] || std::abs(a[i] - b[i]) < 1e-5f;
+  return alike;
+}
+
+const char* const kMap = "[432100.25, 5411000.5, 300.125]";
+const Vec3d kMiddle{432100.25, 5411000.5, 300.125};
+
+/// A closed box from -1 to 1, or a part of the map.
+std::string cube(const Vec3d& at) {
+  std::string text;
+  for (int i = 0; i < 8; ++i)
+    text += "v " + text_of(at.x + (i & 1 ? 1 : -1)) + " " + text_of(at.y + (i & 2 ? 1 : -1)) + " " +
+            text_of(at.z + (i & 4 ? 1 : -1)) + "\n";
+  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+}
+
+// Combinations and prototypes have spaces of their own, in which rays are floats, too; and transforms alone
+// can lead far away.
+TEST(Recentre, InnerSpacesAndTransformsKeepDigits) {
+  const TempDir dir;
+  dir.write("far.obj", cube(kMiddle)), dir.write("near.obj", cube({}));
+  const auto scene_of = [](const std::string& file, const std::string& at, int kind) {
+    const std::string mesh = "{mesh: {file: " + file + "}}",
+                      ball = "{sphere: {center: " + at + ", radius: 1.3}}", back = kind == 3 ? "far" : "";
+    const std::string there = "transform: {translate: " + at + "}";
+    switch (kind) {
+      case 0:
+        return "objects: [{difference: [" + mesh + ", " + ball + "]}]\n";
+      case 1:
+        return "define: {a: {group: [" + mesh + ", " + ball + "]}}\nobjects: [{instance: a}]\n";
+      case 2:
+        return "objects: [" + ball + "]\n";
+      case 3:
+        return "objects: [{mesh: {file: near.obj}, " + there +
+               "}, {difference: [{box: {}}, {sphere: {radius: "
+               "1.3}}], " +
+               there + "}]\n";
+      default:
+        return "define: {a: {torus: {major: 1, minor: 0.3}}}\nobjects: [{instance: a, " + there + "}]\n";
+    }
+  };
+  for (int kind = 0; kind < 5; ++kind) {
+    SCOPED_TRACE(kind);
+    const Scene near =
+        load_scene(dir.write("near.yaml", "oktett: 1\n" + scene_of("near.obj", "[0, 0, 0]", kind)));
+    const Scene far = load_scene(dir.write("far.yaml", "oktett: 1\n" + scene_of("far.obj", kMap, kind)));
+    EXPECT_TRUE(near.origin == Vec3d{});
+    EXPECT_FALSE(far.origin == Vec3d{});
+    EXPECT_LT(length(far.origin - kMiddle), 8);
+    EXPECT_TRUE(far.warnings.empty());
+    const std::vector<float> wanted = depths(near, {}), found = depths(far, kMiddle);
+    EXPECT_GE(count_alike(wanted, found), wanted.size() - 4);
+    EXPECT_GT(std::ranges::count_if(wanted, [](float t) { return t < 100; }), 20);
+  }
+  // An instance may bring its prototype back.
+  const Scene home = load_scene(
+      dir.write("home.yaml",
+                "oktett: 1\ndefine: {a: {mesh: {file: far.obj}}}\nobjects: [{instance: a, transform: "
+                "{translate: [-432100.25, -5411000.5, -300.125]}}]\n"));
+  EXPECT_TRUE(home.origin == Vec3d{});
+  EXPECT_EQ(count_alike(depths(home, {}), depths(load_scene(dir.file("near.obj")), {})), 17u * 17);
+}
+
+/// A glTF file of nodes that show a triangle with corners at (0, 0, 0), (1, 0, 0) and (0, 1, 0), or a camera.
+std::string gltf_of(const std::string& nodes, const std::string& which) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + which + R"(]}],"nodes":[)" + nodes +
+         R"(],"cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1}}],)" +
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)" +
+         R"("min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[)" +
+         R"({"byteLength":36,"uri":"data:application/octet-stream;base64,)" +
+         R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+}
+
+TEST(Recentre, NodesOfGltfFilesKeepDigits) {
+  const TempDir dir;
+  const std::string far = R"({"mesh":0,"translation":[432100.3,5411000.7,300.1],"scale":[0.3,0.3,0.3]})";
+  const Vec3d at{432100.3, 5411000.7, 300.1};
+  const std::vector<Vec3d> wanted{at, at + Vec3d{0.3, 0, 0}, at + Vec3d{0, 0.3, 0}};
+  const MeshFile file = load_mesh(dir.write("a.gltf", gltf_of(far, "0")));
+  expect_near(corners_of(file.mesh), wanted, 1e-7);
+  EXPECT_TRUE(file.warnings.empty());
+  // Written and read again.
+  convert_mesh(dir.file("a.gltf"), dir.file("b.glb"), {});
+  expect_near(corners_of(load_mesh(dir.file("b.glb")).mesh), wanted, 2e-7);
+  // A scene of its own, for its camera.
+  const Scene scene = load_scene(
+      dir.write("c.gltf", gltf_of(far + R"(,{"camera":0,"translation":[432100.4,5411000.8,302]})", "0,1")));
+  EXPECT_LT(length(scene.origin - at), 2);
+  EXPECT_LT(length(scene.origin + scene.camera.from - Vec3d{432100.4, 5411000.8, 302}), 1e-8);
+  EXPECT_LT(length(scene.origin + scene.objects.at(0).transform.point({0, 0, 0}) - at), 1e-8);
+  EXPECT_LT(length(scene.objects.at(0).transform.point({0, 0, 0})), 2);
+  // One mesh of a node here and one there cannot keep them.
+  EXPECT_EQ(count_rounded(load_mesh(dir.write("d.gltf", gltf_of(far + R"(,{"mesh":0})", "0,1"))).warnings),
+            1u);
+}
+
+TEST(Recentre, ObjectsTooFarFromOthersAreAWarning) {
+  const TempDir dir;
+  dir.write("far.obj", cube(kMiddle));
+  const auto lost = [](const Scene& scene) {
+    return std::ranges::count_if(scene.warnings, [](const Warning& w) {
+      return w.message.find("details are lost") != std::string::npos;
+    });
+  };
+  const Scene scene = load_scene(dir.write("a.yaml",
+                                           "oktett: 1\nobjects: [{sphere: {radius: 1}, name: ball}, {mesh: "
+                                           "{file: far.obj}}, {sphere: {radius: 2}}]\n"));
+  EXPECT_LT(length(scene.origin - kMiddle), 4);
+  ASSERT_EQ(lost(scene), 1);
+  EXPECT_EQ(scene.warnings.at(0).where.line, 2);
+  EXPECT_TRUE(
+      scene.warnings.at(0).message.starts_with("'ball' (and one more) of the extent 2 lies 5.41e+06 away"))
+      << scene.warnings.at(0).message;
+  // A town with a bolt, and one in kilometres around a scan.
+  for (const char* text :
+       {"objects: [{box: {min: [-5000, -5000, 0], max: [5000, 5000, 1]}}, {sphere: {radius: 0.1, center: "
+        "[4000, 3000, 2]}}]\n",
+        "objects: [{mesh: {file: far.obj}}, {sphere: {radius: 1, center: [440000, 5411000, 300]}}]\n"})
+    EXPECT_EQ(lost(load_scene(dir.write("b.yaml", std::string("oktett: 1\n") + text))), 0) << text;
 }
 
 // The same ground near the origin and far from it, with camera, light and motion, is the same scene.
