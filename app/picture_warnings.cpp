@@ -7,7 +7,12 @@
 namespace oktett {
 namespace {
 
-std::string place_text(const Vec3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
+/// A place of the scene in the coordinates of its files.
+std::string place_text(const Scene& scene, const Vec3d& place) {
+  const Vec3d p = scene.origin + place;
+  const int digits = scene.origin == Vec3d{} ? 6 : 10;
+  return fmt::format("({:.{}g}, {:.{}g}, {:.{}g})", p.x, digits, p.y, digits, p.z, digits);
+}
 
 bool is_black_picture(const Picture& picture) {
   for (const char* name : {"R", "G", "B"})
@@ -34,7 +39,7 @@ std::string why_nothing_is_seen(const RenderResult& result) {
   if (report.stopped || report.camera_rays == 0 || scene.objects.empty()) return {};
   if (report.camera_hits == 0 && scene.medium == kNoId)
     return fmt::format("the camera at {}, which looks towards {}, sees none of the objects",
-                       place_text(scene.camera.from), place_text(scene.camera.at));
+                       place_text(scene, scene.camera.from), place_text(scene, scene.camera.at));
   if (traits(scene.integrator.kind).bounces() && is_black_picture(result.picture))
     return "the picture is black: " + why_black(scene);
   return {};

@@ -106,7 +106,9 @@ ViewState parse_view(std::string_view text, ViewState state) {
   return state;
 }
 
-std::string camera_yaml(const Camera& c) {
+std::string camera_yaml(Camera c, const Vec3d& origin) {
+  c.from = origin + c.from, c.at = origin + c.at;
+  if (c.focus_at) c.focus_at = origin + *c.focus_at;
   std::string out = fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", list_text(c.from),
                                 list_text(c.at), list_text(c.up));
   if (c.projection == Projection::orthographic)
@@ -206,9 +208,9 @@ FoundObject object_of(const Scene& scene, std::uint32_t user) {
 
 /// What the ray through the centre of a pixel meets, as one JSON object; the pixel counts from the upper left
 /// corner of the part of the frame that is rendered. Numbers have as many digits as give back the bits that
-/// closest_hit and surface_interaction give. Of a combination the operand counts whose
-/// surface is hit. Motion is left out: things stand where they are at time 0. Throws Error for a pixel
-/// outside. While another thread renders, `prepared` may be asked.
+/// closest_hit and surface_interaction give; "place" is "point" in the coordinates of the files. Of a
+/// combination the operand counts whose surface is hit. Motion is left out: things stand where they are at
+/// time 0. Throws Error for a pixel outside. While another thread renders, `prepared` may be asked.
 static std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film,
                              std::uint32_t x, std::uint32_t y, Isa isa) {
   const Scene& scene = prepared.scene();
@@ -228,12 +230,13 @@ static std::string pick_json(const PreparedScene& prepared, const Camera& camera
   const std::string shape = object.object != nullptr ? std::visit(NameOfShape{}, object.object->shape) : "";
   return head + fmt::format(
                     ", \"t\": {}, \"u\": {}, \"v\": {}, \"item\": {}, \"instance\": {}, \"point\": {}, "
-                    "\"normal\": {}, "
+                    "\"place\": {}, \"normal\": {}, "
                     "\"shading_normal\": {}, \"object\": {}, \"object_name\": {}, \"primitive\": {}, "
                     "\"surface\": {}, "
                     "\"material\": {}, \"depth\": {}}}",
                     number_text(hit.t), number_text(hit.u), number_text(hit.v), hit.item, hit.instance,
-                    list_text(s.position), list_text(s.geometric_normal), list_text(s.shading_normal), s.user,
+                    list_text(s.position), list_text(scene.origin + Vec3d(s.position)),
+                    list_text(s.geometric_normal), list_text(s.shading_normal), s.user,
                     JsonValue(object.name).text, s.primitive, JsonValue(shape).text,
                     JsonValue(material.name).text, camera_depth(frame, s.position));
 }
@@ -310,7 +313,7 @@ void Session::adopt(Loaded loaded) {
   // Who has turned the view keeps it, unless the file's own view was edited.
   if (first || !(home.camera == status_.home.camera)) status_.state.camera = home.camera;
   if (first || !(home.tone == status_.home.tone)) status_.state.tone = home.tone;
-  status_.home = home;
+  status_.home = home, status_.origin = scene.origin;
   const std::vector<std::string>& layers = status_.layers = layer_names(scene);
   ++status_.edits;
   if (std::ranges::find(layers, status_.state.layer) == layers.end()) status_.state.layer = "beauty";
@@ -405,7 +408,7 @@ std::string Session::pick(std::uint32_t x, std::uint32_t y) {
 
 std::string Session::camera() const {
   const std::lock_guard lock(mutex_);
-  return camera_yaml(status_.state.camera);
+  return camera_yaml(status_.state.camera, status_.origin);
 }
 
 std::string Session::save(const std::string& extension, const std::function<bool()>& is_gone) {

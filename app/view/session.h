@@ -43,9 +43,9 @@ struct ViewState {
 /// that no scene file could have.
 ViewState parse_view(std::string_view text, ViewState state);
 
-/// The camera as the part of a scene file that gives the same camera, number by number. What moves it is left
-/// out.
-std::string camera_yaml(const Camera& camera);
+/// The camera of a scene that counts from `origin` as the part of a scene file that gives the same camera,
+/// number by number. What moves it is left out.
+std::string camera_yaml(Camera camera, const Vec3d& origin);
 
 // ---- Whether files have changed, by asking for their times and sizes.
 
@@ -71,6 +71,7 @@ struct SessionStatus {
   std::uint64_t edits = 0;  ///< of the scene, read without an error
   std::vector<std::string> layers;
   ViewState home;  ///< the view of the scene file
+  Vec3d origin;    ///< Scene::origin, from which all places count
   Vec3d center;    ///< of the scene's bounds
   double radius = 1;
   std::optional<Error> error;  ///< why the scene could not be read again, and the last good one is still

@@ -39,6 +39,21 @@ TEST(NothingSeen, ACameraThatMeetsNoObjectIsTold) {
   EXPECT_EQ(told("camera: {from: [0, 0, 5], at: [1.9, 0, 0], fov: 40}\n"), "");
 }
 
+// A scan in coordinates of a map, which the scene counts from.
+TEST(NothingSeen, AFarCameraIsToldInTheCoordinatesOfTheFile) {
+  const TempDir dir;
+  dir.write("a.obj", "v 432100 5411000 300\nv 432100.5 5411000 300\nv 432100 5411000.5 300\nf 1 2 3\n");
+  dir.write("a.yaml",
+            "oktett: 1\ncamera: {from: [432100.25, 5411000, 305], at: [432100.25, 5411000, 309.5]}\n"
+            "objects: [{mesh: {file: a.obj}}]\n");
+  const CommandResult result =
+      run_command(dir, {"render", "a.yaml", "-o", "x.png", "--quiet", "--size", "8x6"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err,
+            "warning: the camera at (432100.25, 5411000, 305), which looks towards (432100.25, 5411000, "
+            "309.5), sees none of the objects\n");
+}
+
 TEST(NothingSeen, ABlackPictureSaysWhy) {
   const std::string camera = "camera: {from: [0, 0, 5], at: [0, 0, 0]}\n";
   const std::string dark = camera + "background: [0, 0, 0]\nambient_light: [0, 0, 0]\n";

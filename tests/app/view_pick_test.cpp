@@ -9,6 +9,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <random>
 #include <set>
@@ -83,18 +84,31 @@ struct Thing {
   std::string surface, name;
 };
 
+/// A running viewer, and what it answers.
+struct Viewer {
+  explicit Viewer(const TempDir& dir, const std::string& file)
+      : process(dir, {"view", file, "--no-open"}), runs(process.wait_for_err("Ctrl-C", 30)) {
+    if (!runs) return;
+    const std::string text = process.err(), begin = "http://127.0.0.1:";
+    const std::size_t port_at = text.find(begin) + begin.size();
+    port = std::stoi(text.substr(port_at));
+    path = text.substr(text.find('/', port_at), 34);
+  }
+  std::string answer(const std::string& request) const { return get(port, path + request); }
+
+  CommandProcess process;
+  const bool runs;
+  int port = 0;
+  std::string path;
+};
+
 /// Asks the viewer for `count` pixels at random, and the library for the rays through their centres, with the
 /// narrowest instruction set. Returns the materials of what was hit.
 std::set<std::string> compare_picks(const std::string& file, const std::map<std::string, Thing>& things,
                                     int count) {
   const TempDir dir;
-  CommandProcess viewer(dir, {"view", file, "--no-open"});
-  if (!viewer.wait_for_err("Ctrl-C", 30)) return {viewer.err()};
-  const std::string text = viewer.err(), begin = "http://127.0.0.1:";
-  const std::size_t port_at = text.find(begin) + begin.size();
-  const int port = std::stoi(text.substr(port_at));
-  const std::string path = text.substr(text.find('/', port_at), 34);
-
+  Viewer viewer(dir, file);
+  if (!viewer.runs) return {viewer.process.err()};
   const Scene scene = load_scene_file(file);
   const World world = build_world(scene);
   const CameraFrame frame = camera_frame(scene.camera, scene.film);
@@ -104,7 +118,7 @@ std::set<std::string> compare_picks(const std::string& file, const std::map<std:
     const auto x = static_cast<std::uint32_t>(random() % scene.film.width),
                y = static_cast<std::uint32_t>(random() % scene.film.height);
     SCOPED_TRACE("pixel " + std::to_string(x) + ", " + std::to_string(y));
-    auto pick = members(get(port, path + "pick?x=" + std::to_string(x) + "&y=" + std::to_string(y)));
+    auto pick = members(viewer.answer("pick?x=" + std::to_string(x) + "&y=" + std::to_string(y)));
     const Ray ray = camera_ray(frame, x + 0.5, y + 0.5);
     expect_bits(pick["origin"], ray.origin, "origin");
     expect_bits(pick["direction"], ray.direction, "direction");
@@ -136,8 +150,8 @@ std::set<std::string> compare_picks(const std::string& file, const std::map<std:
     EXPECT_EQ(pick["object_name"], '"' + thing->second.name + '"') << material;
     EXPECT_EQ(pick["surface"], '"' + thing->second.surface + '"') << material;
   }
-  viewer.send(SIGTERM);
-  EXPECT_EQ(viewer.wait(), 0);
+  viewer.process.send(SIGTERM);
+  EXPECT_EQ(viewer.process.wait(), 0);
   return seen;
 }
 
@@ -164,6 +178,31 @@ std::string hills() {
               corner(b + 1) + "\n";
     }
   return text;
+}
+
+/// A scene far from the origin counts from another place; who copies its camera or notes a point does not.
+TEST(ViewPick, FarPlacesAndCamerasAreThoseOfTheFile) {
+  if (!has_viewer()) GTEST_SKIP() << "built without a viewer";
+  const TempDir dir;
+  dir.write("a.obj", "v 432100 5411000 300\nv 432108 5411000 300\nv 432100 5411008 300\nf 1 2 3\n");
+  Viewer viewer(dir,
+                dir.write("a.yaml",
+                          "oktett: 1\nfilm: {width: 8, height: 8}\n"
+                          "camera: {from: [432101.25, 5411001.5, 305], at: [432101.25, 5411001.5, 300]}\n"
+                          "objects: [{mesh: {file: a.obj}}]\n"));
+  ASSERT_TRUE(viewer.runs) << viewer.process.err();
+  EXPECT_TRUE(viewer.answer("camera").starts_with(
+      "camera:\n  from: [432101.25, 5411001.5, 305]\n  at: [432101.25, 5411001.5, 300]\n"))
+      << viewer.answer("camera");
+  auto pick = members(viewer.answer("pick?x=4&y=4"));
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(pick["place"].c_str(), "[%lf, %lf, %lf]", &x, &y, &z), 3) << pick["place"];
+  // Half a pixel beside the middle.
+  EXPECT_NEAR(x, 432101.25, 0.5);
+  EXPECT_NEAR(y, 5411001.5, 0.5);
+  EXPECT_NEAR(z, 300, 1e-5);
+  viewer.process.send(SIGTERM);
+  EXPECT_EQ(viewer.process.wait(), 0);
 }
 
 /// Where the viewer looks at meshes, its answers have the bits of closest_hit and surface_interaction.

@@ -134,11 +134,11 @@ async function pick(event) {
   if (!answer.ok) { say(await answer.text()); return null; }
   const found = await answer.json();
   const rows = [["pixel", `${x}, ${y}`]];
-  const list = (v) => v.map((n) => n === null ? "–" : Number(n.toPrecision(6))).join(", ");
+  const list = (v, digits = 6) => v.map((n) => n === null ? "–" : Number(n.toPrecision(digits))).join(", ");
   if (!found.hit) rows.push(["meets", "nothing"]);
   else rows.push(["object", found.object_name ? `${found.object_name} (${found.object})` : found.object],
     ["surface", found.surface], ["material", found.material || "–"], ["primitive", found.primitive],
-    ["point", list(found.point)], ["normal", list(found.normal)], ["distance", found.t], ["depth", found.depth],
+    ["point", list(found.place, String(found.place) === String(found.point) ? 6 : 10)], ["normal", list(found.normal)], ["distance", found.t], ["depth", found.depth],
     ["u, v", list([found.u, found.v])]);
   $("pick").replaceChildren(...rows.flatMap(([name, value]) => {
     const dt = document.createElement("dt"), dd = document.createElement("dd");
