@@ -58,6 +58,7 @@ ImageMetadata first_metadata(const std::string& command_line, const RenderArgume
   metadata.command_line = command_line;
   metadata.scene = arguments.scene;
   metadata.samples = scene.integrator.samples;
+  metadata.origin = scene.origin;
   return metadata;
 }
 

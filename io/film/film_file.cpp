@@ -24,7 +24,7 @@ namespace oktett {
 
 namespace {
 
-constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16;
+constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16, kHasOrigin = 32;
 
 void append_pairs(std::string& bytes, const FilmFingerprint::Entries& pairs) {
   append_number(bytes, static_cast<std::uint32_t>(pairs.size()));
@@ -61,26 +61,32 @@ void check_light_groups(const FilmFormat& format) {
     throw Error("its light groups cannot be");
 }
 
+bool has_origin(const ImageMetadata& metadata) { return !(metadata.origin == Vec3d{}); }
+
 void append_metadata(std::string& bytes, const ImageMetadata& metadata) {
   for (const std::string* text : {&metadata.software, &metadata.command_line, &metadata.scene})
     append_text(bytes, *text);
   append_number(bytes, metadata.samples);
   append_number(bytes, metadata.render_seconds);
-  if (!metadata.camera) return;
-  for (const Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
-    for (const float x : *matrix) append_number(bytes, x);
+  if (metadata.camera)
+    for (const Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
+      for (const float x : *matrix) append_number(bytes, x);
+  if (has_origin(metadata))
+    for (int k = 0; k < 3; ++k) append_number(bytes, metadata.origin[k]);
 }
 
-ImageMetadata take_metadata(ByteReader& reader, bool camera) {
+ImageMetadata take_metadata(ByteReader& reader, bool camera, bool origin) {
   ImageMetadata metadata;
   for (std::string* text : {&metadata.software, &metadata.command_line, &metadata.scene})
     *text = reader.text();
   metadata.samples = reader.number<std::uint32_t>();
   metadata.render_seconds = reader.number<double>();
-  if (!camera) return metadata;
-  metadata.camera.emplace();
-  for (Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
-    for (float& x : *matrix) x = reader.number<float>();
+  if (camera) {
+    metadata.camera.emplace();
+    for (Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
+      for (float& x : *matrix) x = reader.number<float>();
+  }
+  for (int k = 0; origin && k < 3; ++k) metadata.origin[k] = reader.number<double>();
   return metadata;
 }
 
@@ -116,10 +122,10 @@ static std::string film_header(const FilmFile& file, std::uint32_t tiles) {
   const FilmState& film = *file.film;
   const FilmPlan& plan = film.plan();
   std::string bytes;
-  const unsigned flags = (plan.format.data_layers ? kDataLayers : 0u) |
-                         (plan.format.sample_counts ? kSampleCounts : 0u) |
-                         (plan.format.mattes ? kMattes : 0u) | (plan.moves ? kMoves : 0u) |
-                         (file.metadata.camera ? kCamera : 0u);
+  const unsigned flags =
+      (plan.format.data_layers ? kDataLayers : 0u) | (plan.format.sample_counts ? kSampleCounts : 0u) |
+      (plan.format.mattes ? kMattes : 0u) | (plan.moves ? kMoves : 0u) |
+      (file.metadata.camera ? kCamera : 0u) | (has_origin(file.metadata) ? kHasOrigin : 0u);
   append_number(bytes, static_cast<std::uint8_t>(flags));
   append_window(bytes, plan.format);
   const Tone tone = film.tone();
@@ -158,7 +164,7 @@ static std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
   plan.format.light_groups = take_texts(reader);
   check_light_groups(plan.format);
   plan.attributes = take_pairs(reader);
-  file.metadata = take_metadata(reader, (flags & kCamera) != 0);
+  file.metadata = take_metadata(reader, (flags & kCamera) != 0, (flags & kHasOrigin) != 0);
   file.fingerprint.settings = take_pairs(reader);
   file.fingerprint.files = take_pairs(reader);
   file.words = take_texts(reader);

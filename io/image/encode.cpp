@@ -86,6 +86,7 @@ std::vector<Attribute> attributes(const ImageMetadata& metadata) {
     all.push_back({"worldToCamera", metadata.camera->world_to_camera});
     all.push_back({"worldToNDC", metadata.camera->world_to_ndc});
   }
+  if (!(metadata.origin == Vec3d{})) all.push_back({"origin", metadata.origin});
   return all;
 }
 

@@ -33,7 +33,7 @@ FlatImage flatten(const Picture& picture, PixelLayout layout);
 /// One fact of ImageMetadata under the name that it has in files.
 struct Attribute {
   std::string name;
-  std::variant<std::string, std::int32_t, float, Matrix4> value;
+  std::variant<std::string, std::int32_t, float, Matrix4, Vec3d> value;
 };
 
 /// Those members of `metadata` that are not empty or zero.

@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -88,6 +89,7 @@ struct AddTo {
     std::memcpy(rows.x, matrix.data(), sizeof rows.x);
     header.insert(name, Imf::M44fAttribute(rows));
   }
+  void operator()(const Vec3d& v) const { header.insert(name, Imf::V3dAttribute({v.x, v.y, v.z})); }
 };
 
 /// The corners (x, y) and (x + width - 1, y + height - 1).

@@ -38,6 +38,7 @@ struct ImageMetadata {
   std::uint32_t samples = 0;  ///< per pixel; attribute `samples`
   double render_seconds = 0;  ///< attribute `renderSeconds`
   std::optional<CameraMatrices> camera;
+  Vec3d origin;  ///< Scene::origin, from which `camera` and the planes of positions count; attribute `origin`
 };
 
 }  // namespace oktett

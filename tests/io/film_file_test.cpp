@@ -36,6 +36,7 @@ FilmFile small_film() {
   file.words = {"render", "a.yaml", ""};
   file.metadata.software = "oktett 1", file.metadata.command_line = "oktett render a.yaml";
   file.metadata.scene = "a.yaml", file.metadata.samples = 24, file.metadata.render_seconds = 1.5;
+  file.metadata.origin = {432100.25, 5411000, -300};
   file.metadata.camera.emplace();
   for (std::size_t i = 0; i < 16; ++i)
     file.metadata.camera->world_to_camera[i] = static_cast<float>(i),
@@ -86,6 +87,7 @@ TEST_F(FilmFiles, WhatIsReadIsWhatWasWritten) {
   EXPECT_EQ(is.metadata.scene, was.metadata.scene);
   EXPECT_EQ(is.metadata.samples, was.metadata.samples);
   EXPECT_EQ(is.metadata.render_seconds, was.metadata.render_seconds);
+  EXPECT_EQ(is.metadata.origin, was.metadata.origin);
   ASSERT_TRUE(is.metadata.camera);
   EXPECT_EQ(is.metadata.camera->world_to_camera, was.metadata.camera->world_to_camera);
   EXPECT_EQ(is.metadata.camera->world_to_ndc, was.metadata.camera->world_to_ndc);

@@ -130,7 +130,13 @@ TEST(Exr, MetadataIsWritten) {
   metadata.samples = 16;
   metadata.render_seconds = 1.5;
   metadata.camera = camera_matrices(Camera{}, 20, 10);
+  metadata.origin = {432100.25, 5411000, -300};
   write_image(dir.file("a.exr"), color_picture(2, 2, 1, 1, 1, 1), metadata);
+  // As OpenEXR stores three doubles: name, type, number of bytes.
+  std::string origin("origin\0v3d\0\x18\0\0\0", 15);
+  for (int k = 0; k < 3; ++k)
+    origin.append(reinterpret_cast<const char*>(&metadata.origin[k]), sizeof(double));
+  EXPECT_NE(test::file_content(dir.file("a.exr")).find(origin), std::string::npos);
   const OIIO::ImageSpec spec = OIIO::ImageInput::open(dir.file("a.exr"))->spec();
   EXPECT_EQ(spec.get_string_attribute("Software"), metadata.software);
   EXPECT_EQ(spec.get_string_attribute("commandLine"), metadata.command_line);

@@ -36,6 +36,9 @@ struct AddTo {
   const std::string& name;
 
   void operator()(const Matrix4& matrix) const { spec.attribute(name, OIIO::TypeMatrix, matrix.data()); }
+  void operator()(const Vec3d& v) const {
+    spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::VEC3), &v);
+  }
   void operator()(const auto& value) const { spec.attribute(name, value); }
 };
 
