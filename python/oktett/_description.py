@@ -38,7 +38,7 @@ def _mesh_in_file(node: Dict[str, Any], files: Dict[str, bytes]) -> Dict[str, An
     rest = {key: value for key, value in node.items() if key not in ("vertices", "faces", *carried)}
     if "vertices" not in node or "faces" not in node or "file" in node:
         raise ValueError("mesh: expected both vertices and faces, or a file")
-    vertices = _rows(node["vertices"], "vertices", "<f4", "fiu")
+    vertices = _rows(node["vertices"], "vertices", _type_of_places(node["vertices"]), "fiu")
     faces = _rows(node["faces"], "faces", "<i8", "iu")
     if faces.size and not (0 <= faces.min() and faces.max() < len(vertices)):
         raise ValueError(f"faces: expected indices of vertices, 0 to {len(vertices)} - 1")
@@ -66,7 +66,7 @@ def _mesh_in_file(node: Dict[str, Any], files: Dict[str, bytes]) -> Dict[str, An
 
 # What numbers belong to ("vertex", "face" or "corner"), the names of their properties, and their rows.
 _Column = Tuple[str, List[str], np.ndarray]
-_TYPES = {"u1": "uchar", "u2": "ushort", "f4": "float"}
+_TYPES = {"u1": "uchar", "u2": "ushort", "f4": "float", "f8": "double"}
 
 
 def _columns(carried: Dict[str, Any], vertices: int, faces: int) -> List[_Column]:
@@ -130,6 +130,12 @@ def _records(columns: List[_Column], count: int, first: List[Any]) -> np.ndarray
     for i, (_, _, rows) in enumerate(columns):
         records[f"part {i}"] = rows
     return records
+
+
+def _type_of_places(value: Any) -> str:
+    """The reader takes a centre off those that lie far from the origin before it rounds them."""
+    dtype = np.asarray(value).dtype
+    return "<f4" if dtype.kind == "f" and dtype.itemsize <= 4 else "<f8"
 
 
 def _rows(value: Any, name: str, kind: str, allowed: str) -> np.ndarray:

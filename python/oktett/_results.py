@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float32]
+Places = npt.NDArray[np.floating[Any]]  # float64 if the scene has an origin, else float32
 Ids = npt.NDArray[np.uint32]
 
 
@@ -41,7 +42,7 @@ class _HitColumns(NamedTuple):
     instance: Optional[Ids] = None
     uv: Optional[Floats] = None
     normal: Optional[Floats] = None
-    position: Optional[Floats] = None
+    position: Optional[Places] = None
 
 
 class Hits(_Carried, _HitColumns):
@@ -50,7 +51,7 @@ class Hits(_Carried, _HitColumns):
 
 class _PointColumns(NamedTuple):
     distance: Optional[Floats] = None
-    point: Optional[Floats] = None
+    point: Optional[Places] = None
     object: Optional[Ids] = None
     primitive: Optional[Ids] = None
     instance: Optional[Ids] = None
@@ -70,7 +71,7 @@ class _ListColumns(NamedTuple):
     instance: Optional[Ids] = None
     uv: Optional[Floats] = None
     normal: Optional[Floats] = None
-    position: Optional[Floats] = None
+    position: Optional[Places] = None
 
 
 class HitLists(_Carried, _ListColumns):

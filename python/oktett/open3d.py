@@ -37,7 +37,8 @@ class RaycastingScene:
     """Triangle meshes to ask with rays and points.
 
     Rays are of shape {.., 6}: origin and direction, which need not have length 1; distances count in its
-    lengths. Points are of shape {.., 3}. Both are float32; other numbers are converted. A miss has the distance
+    lengths. Points are of shape {.., 3}. Both are float32; other numbers are converted. Where meshes lie far from
+    (0, 0, 0), see Scene.origin, that is taken off float64 before, and points that come back are float64. A miss has the distance
     inf, the ids INVALID_ID and zeros else. Other shapes raise ValueError.
 
     nthreads is accepted and ignored: oktett.set_threads limits the threads.
@@ -122,7 +123,7 @@ class RaycastingScene:
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> Dict[str, Answer]:
         """The nearest point of all triangles: a dict of
 
-        points             float32 {.., 3}
+        points             float32 {.., 3} float64 if the scene has an origin
         geometry_ids       uint32  {..}
         primitive_ids      uint32  {..}    triangle
         primitive_uvs      float32 {.., 2} barycentric weights of its second and third corner
@@ -169,7 +170,7 @@ class RaycastingScene:
         # One mesh in another is a hole in it, so all meshes count together.
         if points.ndim < 1 or points.shape[-1] != 3:
             raise ValueError(f"query_points: expected numbers of shape (..., 3), found the shape {points.shape}")
-        rays = np.empty((*points.shape[:-1], 6), np.float32)
+        rays = np.empty((*points.shape[:-1], 6), np.float32 if points.dtype == np.float32 else np.float64)
         rays[..., :3], rays[..., 3:] = points, (0.2390512, 0.4395064, 0.8658552)
         return self._scene.count_hits(rays) % 2 == 1
 
@@ -181,7 +182,8 @@ class RaycastingScene:
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Answer:
-        """Rays of a pinhole camera, float32 {height_px, width_px, 6}. Two forms:
+        """Rays of a pinhole camera, float32 {height_px, width_px, 6}; float64 if float32 moved the eye by 0.001.
+        Two forms:
 
         create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px)
             with a matrix (3, 3) from the camera to pixels and one (4, 4) from the world to the camera;
@@ -245,8 +247,10 @@ def _rays_of_matrices(intrinsic_matrix: Any, extrinsic_matrix: Any, width_px: in
     intrinsic = _matrix(intrinsic_matrix, "intrinsic_matrix", (3, 3))
     extrinsic = _matrix(extrinsic_matrix, "extrinsic_matrix", (4, 4))
     rotation, translation = extrinsic[:3, :3], extrinsic[:3, 3]
-    rays = np.empty((height_px, width_px, 6), np.float32)
-    rays[:, :, :3] = -rotation.T @ translation
+    eye = -rotation.T @ translation
+    moved = np.abs(eye.astype(np.float32) - eye).max()
+    rays = np.empty((height_px, width_px, 6), np.float32 if moved < 0.001 else np.float64)
+    rays[:, :, :3] = eye
     pixels = np.ones((height_px, width_px, 3))
     pixels[:, :, 0] = np.arange(width_px) + 0.5
     pixels[:, :, 1] = (np.arange(height_px) + 0.5)[:, None]

@@ -41,15 +41,38 @@ FloatArray to_floats(const py::array& array) {
 
 std::string shape_text(const py::array& array) { return text_of(shape_of(array)); }
 
-FloatArray float_rows(py::handle value, const char* name, py::ssize_t last) {
+py::array number_rows(py::handle value, const char* name, py::ssize_t last) {
   const std::string expected = "an array of numbers of shape (..., " + std::to_string(last) + ")";
   const py::array array = number_array(value, name, expected);
   if (array.ndim() < 1 || array.shape(array.ndim() - 1) != last)
     fail(name, expected, "the shape " + shape_text(array));
-  return to_floats(array);
+  return array;
 }
 
-ArrayShape row_shape(const FloatArray& rows) { return {rows.shape(), rows.shape() + rows.ndim() - 1}; }
+FloatArray float_rows(py::handle value, const char* name, py::ssize_t last) {
+  return to_floats(number_rows(value, name, last));
+}
+
+DoubleArray to_doubles(const py::array& rows) {
+  auto doubles = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(rows);
+  if (!doubles) throw py::error_already_set();
+  return py::reinterpret_borrow<DoubleArray>(doubles);
+}
+
+FloatArray floats_from(const Vec3d& origin, const py::array& rows) {
+  if (origin == Vec3d{}) return to_floats(rows);
+  const DoubleArray from = to_doubles(rows);
+  FloatArray result(shape_of(rows));
+  const py::ssize_t size = rows.size(), last = rows.shape(rows.ndim() - 1);
+  const double* const in = from.data();
+  float* const out = result.mutable_data();
+  for (py::ssize_t i = 0; i < size; i += last)
+    for (py::ssize_t k = 0; k < last; ++k)
+      out[i + k] = static_cast<float>(k < 3 ? in[i + k] - origin[static_cast<int>(k)] : in[i + k]);
+  return result;
+}
+
+ArrayShape row_shape(const py::array& rows) { return {rows.shape(), rows.shape() + rows.ndim() - 1}; }
 
 FloatArray float_each(py::handle value, const char* name, const ArrayShape& shape) {
   const std::string expected = "a number or an array of shape " + text_of(shape);

@@ -8,23 +8,37 @@
 #include <string>
 #include <vector>
 
+#include "core/vec3.h"
+
 namespace oktett::python {
 
 namespace py = pybind11;
 
 using FloatArray = py::array_t<float, py::array::c_style>;
+using DoubleArray = py::array_t<double, py::array::c_style>;
 using ArrayShape = std::vector<py::ssize_t>;
 
 /// "(4, 6)".
 std::string shape_text(const py::array& array);
 
-/// `value` as an array of floats whose last dimension is `last`, e.g. of shape (..., 6). It is `value` itself
-/// if that is a C-contiguous array of float32, else a copy. Throws ValueError for other shapes, and for what
-/// holds no real numbers.
+/// `value` as an array of real numbers of any type whose last dimension is `last`, e.g. of shape (..., 6).
+/// Throws ValueError for others.
+py::array number_rows(py::handle value, const char* name, py::ssize_t last);
+/// The same in float32. It is `value` itself if that is a C-contiguous array of float32, else a copy.
 FloatArray float_rows(py::handle value, const char* name, py::ssize_t last);
 
+/// Rows that begin with a place, such as points or rays, in float32, with the place counted from `origin`,
+/// which is taken off in double. It is `rows` itself if nothing has to be changed.
+FloatArray floats_from(const Vec3d& origin, const py::array& rows);
+/// An array of number_rows in float64.
+DoubleArray to_doubles(const py::array& rows);
+/// Whether the numbers of an array are floats without being rounded.
+inline bool holds_floats(const py::array& array) {
+  return array.dtype().kind() == 'f' && array.itemsize() <= 4;
+}
+
 /// The dimensions of rows without the last one.
-ArrayShape row_shape(const FloatArray& rows);
+ArrayShape row_shape(const py::array& rows);
 
 /// One number for each of `shape`, or one for all: tmin and tmax of rays. Throws ValueError for other shapes.
 FloatArray float_each(py::handle value, const char* name, const ArrayShape& shape);

@@ -21,6 +21,9 @@ void bind_ray_queries(SceneClass& scene);
 void bind_point_queries(SceneClass& scene);
 
 /// The structure of a scene, built without the interpreter's lock if that is still to be done.
-std::shared_ptr<const World> world_of(SceneStore& scene);
+std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene);
+/// Warns, through Python, of objects so far away from others that rays lose their details; once of each
+/// cause.
+void say_lost_digits(SceneStore& scene);
 
 }  // namespace oktett::python

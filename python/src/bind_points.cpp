@@ -16,22 +16,23 @@ const Fields kPointFields{"distance", "point",  "object",   "primitive", "instan
 
 py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& fields) {
   check_fields(fields, kPointFields);
-  const FloatArray points = float_rows(given, "points", 3);
-  const ArrayShape shape = row_shape(points);
+  const py::array rows = number_rows(given, "points", 3);
+  const ArrayShape shape = row_shape(rows);
   ClosestColumns columns;
   py::dict result;
   const auto add = [&](const char* name, auto*& column, py::ssize_t components) {
     column = make_column(result, name, fields, shape, components, column);
   };
   add("distance", columns.distance, 0);
-  add("point", columns.point, 3);
   add("object", columns.hit.object, 0);
   add("primitive", columns.hit.primitive, 0);
   add("instance", columns.hit.instance, 0);
   add("uv", columns.hit.uv, 2);
   add("normal", columns.hit.normal, 3);
   add("texcoord", columns.hit.texcoord, 2);
-  const std::shared_ptr<const World> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const FloatArray points = floats_from(world->origin, rows);
+  make_places(result, "point", fields, shape, world->origin, columns.point);
   columns.hit.attributes = attribute_columns(fields, *world);
   make_attributes(result, shape, columns.hit.attributes, fields);
   run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
@@ -49,10 +50,11 @@ InsideRule rule_of(const std::string& name, const char* argument) {
 /// An answer for each point: ask(world, points, begin, end, answers) gives those of the points [begin, end).
 template <class T, class Ask>
 py::array ask_each(SceneStore& scene, py::handle given, const Ask& ask) {
-  const FloatArray points = float_rows(given, "points", 3);
-  py::array_t<T> result(row_shape(points));
+  const py::array rows = number_rows(given, "points", 3);
+  py::array_t<T> result(row_shape(rows));
   T* const answers = result.mutable_data();
-  const std::shared_ptr<const World> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const FloatArray points = floats_from(world->origin, rows);
   run_in_pieces(static_cast<std::size_t>(points.size() / 3),
                 [&](std::size_t begin, std::size_t end) { ask(*world, points.data(), begin, end, answers); });
   return result;
@@ -85,12 +87,13 @@ py::array ask_signed_distance(SceneStore& scene, py::handle points, const std::s
 
 constexpr const char* kClosestPointDoc = R"(The point of all surfaces that is nearest to each point.
 
-points: shape (..., 3). C-contiguous float32 is read in place, anything else is copied.
+points: shape (..., 3). C-contiguous float32 is read in place, anything else is copied. The origin of a scene
+    is taken off in float64 before.
 fields: what is wanted. The others are None in the result.
 
 Returns ClosestPoints:
     distance   float32 (...)     inf if there are no surfaces or if the point is not finite
-    point      float32 (..., 3)  the nearest point
+    point      float32 (..., 3)  the nearest point; float64 if the scene has an origin
     object, primitive, instance, uv, normal, texcoord, color, attributes: as in Hits, see closest_hit
 
 Of points at equal distance that of the lowest (instance, object, primitive) counts. Meshes, spheres, boxes,

@@ -16,25 +16,36 @@ namespace oktett::python {
 namespace {
 
 /// The arguments of a query: arrays that are kept alive, and where they lie.
-struct RayArguments {
-  FloatArray rays, tmin, tmax;
-  ArrayShape shape;
-  RayRows rows;
-
+class RayArguments {
+ public:
   RayArguments(py::handle given, py::handle given_tmin, py::handle given_tmax)
-      : rays(float_rows(given, "rays", 6)), shape(row_shape(rays)) {
-    tmin = float_each(given_tmin, "tmin", shape);
-    tmax = float_each(given_tmax, "tmax", shape);
-    rows = {rays.data(),
-            tmin.data(),
-            tmax.data(),
-            tmin.ndim() == 0 ? 0u : 1u,
-            tmax.ndim() == 0 ? 0u : 1u,
-            static_cast<std::size_t>(rays.size() / 6)};
-    for (py::ssize_t i = 0; i < tmin.size(); ++i)
-      if (tmin.data()[i] < 0)
-        throw py::value_error("tmin: expected no negative numbers, found " + std::to_string(tmin.data()[i]));
+      : given_(number_rows(given, "rays", 6)), shape(row_shape(given_)) {
+    tmin_ = float_each(given_tmin, "tmin", shape);
+    tmax_ = float_each(given_tmax, "tmax", shape);
+    for (py::ssize_t i = 0; i < tmin_.size(); ++i)
+      if (tmin_.data()[i] < 0)
+        throw py::value_error("tmin: expected no negative numbers, found " + std::to_string(tmin_.data()[i]));
   }
+
+  /// The rays of a world, which may count from elsewhere.
+  const RayRows& rows_in(const PlacedWorld& world) {
+    rays_ = floats_from(world.origin, given_);
+    rows_ = {rays_.data(),
+             tmin_.data(),
+             tmax_.data(),
+             tmin_.ndim() == 0 ? 0u : 1u,
+             tmax_.ndim() == 0 ? 0u : 1u,
+             static_cast<std::size_t>(rays_.size() / 6)};
+    return rows_;
+  }
+
+ private:
+  py::array given_;
+  FloatArray rays_, tmin_, tmax_;
+  RayRows rows_;
+
+ public:
+  const ArrayShape shape;
 };
 
 /// Calls work(k, places) for the pieces of all rays, in the order of a picture if they look like one.
@@ -63,43 +74,46 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
   visit("instance", columns.instance, 0);
   visit("uv", columns.uv, 2);
   visit("normal", columns.normal, 3);
-  visit("position", columns.position, 3);
   visit("texcoord", columns.texcoord, 2);
 }
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                            const Fields& fields) {
   check_fields(fields, kHitFields);
-  const RayArguments arguments(rays, tmin, tmax);
+  RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
   py::dict result;
   visit_fields(columns, [&](const char* name, auto*& column, py::ssize_t components) {
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
-  const std::shared_ptr<const World> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const RayRows& rows = arguments.rows_in(*world);
+  make_places(result, "position", fields, arguments.shape, world->origin, columns.position);
   columns.attributes = attribute_columns(fields, *world);
   make_attributes(result, arguments.shape, columns.attributes, fields);
-  run_in_places(picture_order(arguments.rows),
-                [&](std::size_t, Places places) { closest_hits(*world, arguments.rows, places, columns); });
+  run_in_places(picture_order(rows),
+                [&](std::size_t, Places places) { closest_hits(*world, rows, places, columns); });
   return py::module_::import("oktett._results").attr("Hits")(**result);
 }
 
 py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax) {
-  const RayArguments arguments(rays, tmin, tmax);
+  RayArguments arguments(rays, tmin, tmax);
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
-  const std::shared_ptr<const World> world = world_of(scene);
-  run_in_places(picture_order(arguments.rows),
-                [&](std::size_t, Places places) { any_hits(*world, arguments.rows, places, out); });
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const RayRows& rows = arguments.rows_in(*world);
+  run_in_places(picture_order(rows),
+                [&](std::size_t, Places places) { any_hits(*world, rows, places, out); });
   return result;
 }
 
 py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax) {
-  const RayArguments arguments(rays, tmin, tmax);
+  RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
-  const std::shared_ptr<const World> world = world_of(scene);
-  run_in_places(picture_order(arguments.rows), [&, out = result.mutable_data()](std::size_t, Places places) {
-    count_hits(*world, arguments.rows, places, out);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const RayRows& rows = arguments.rows_in(*world);
+  run_in_places(picture_order(rows), [&, out = result.mutable_data()](std::size_t, Places places) {
+    count_hits(*world, rows, places, out);
   });
   return result;
 }
@@ -116,6 +130,15 @@ py::object joined(const std::vector<FoundHits>& pieces, std::vector<T> FoundHits
   T* out = array.mutable_data();
   for (const FoundHits& piece : pieces) out = std::copy((piece.*column).begin(), (piece.*column).end(), out);
   return array;
+}
+
+/// Places of a world in float64 if they count from elsewhere; `places` itself, which may be None, if not.
+py::object placed(const py::object& places, const Vec3d& origin) {
+  if (places.is_none() || origin == Vec3d{}) return places;
+  DoubleArray result = to_doubles(places);
+  double* const numbers = result.mutable_data();
+  for (py::ssize_t i = 0; i < result.size(); ++i) numbers[i] += origin[static_cast<int>(i % 3)];
+  return result;
 }
 
 /// Where the hits of each ray begin in the columns of all pieces.
@@ -135,7 +158,7 @@ py::array joined_splits(const std::vector<FoundHits>& pieces, std::size_t rays) 
 py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                         const Fields& fields) {
   check_fields(fields, kHitFields);
-  const RayArguments arguments(rays, tmin, tmax);
+  RayArguments arguments(rays, tmin, tmax);
   // Only whether a column is null counts.
   HitColumns wanted;
   static float some_float;
@@ -147,22 +170,23 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
     else
       column = &some_id;
   });
-  const RayOrder order(arguments.rows.size, 0);
+  if (contains(fields, "position")) wanted.position.floats = &some_float;
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const RayRows& rows = arguments.rows_in(*world);
+  const RayOrder order(rows.size, 0);
   std::vector<FoundHits> pieces(order.piece_count());
-  const std::shared_ptr<const World> world = world_of(scene);
   wanted.attributes = attribute_columns(fields, *world);
-  run_in_places(order, [&](std::size_t k, Places places) {
-    all_hits(*world, arguments.rows, places, wanted, pieces[k]);
-  });
+  run_in_places(order,
+                [&](std::size_t k, Places places) { all_hits(*world, rows, places, wanted, pieces[k]); });
   py::dict result;
-  result["splits"] = joined_splits(pieces, arguments.rows.size);
+  result["splits"] = joined_splits(pieces, rows.size);
   result["t"] = joined(pieces, &FoundHits::t, wanted.t, 0);
   result["object"] = joined(pieces, &FoundHits::object, wanted.object, 0);
   result["primitive"] = joined(pieces, &FoundHits::primitive, wanted.primitive, 0);
   result["instance"] = joined(pieces, &FoundHits::instance, wanted.instance, 0);
   result["uv"] = joined(pieces, &FoundHits::uv, wanted.uv, 2);
   result["normal"] = joined(pieces, &FoundHits::normal, wanted.normal, 3);
-  result["position"] = joined(pieces, &FoundHits::position, wanted.position, 3);
+  result["position"] = placed(joined(pieces, &FoundHits::position, wanted.position.floats, 3), world->origin);
   result["texcoord"] = joined(pieces, &FoundHits::texcoord, wanted.texcoord, 2);
   put_attributes(result, wanted.attributes, fields, [&](std::size_t i) -> py::object {
     std::size_t size = 0;
@@ -182,7 +206,7 @@ constexpr const char* kClosestHitDoc = R"(The nearest hit of each ray.
 
 rays: shape (..., 6), origin and direction of each ray in a row. A hit is at origin + t * direction with
     tmin < t <= tmax; t counts in lengths of the direction, which need not be 1. C-contiguous float32 is read
-    in place, anything else is copied.
+    in place, anything else is copied. The origin of a scene is taken off in float64 before.
 tmin, tmax: a number for all rays, or one for each, shape (...). tmin >= 0.
 fields: what is wanted. The others are None in the result.
 
@@ -194,7 +218,7 @@ Returns Hits:
     uv         float32 (..., 2)  barycentric weights of a triangle's second and third corner; else 0
     normal     float32 (..., 3)  of unit length, out of solids, for meshes by the order of the corners;
                                  0 for a miss
-    position   float32 (..., 3)  the point; 0 for a miss
+    position   float32 (..., 3)  the point; 0 for a miss; float64 if the scene has an origin
     texcoord   float32 (..., 2)  texture coordinates of the mesh; NaN where it has none
     color      float32 (..., 3)  linear colour of the mesh; NaN where it has none
     attributes                   a dict of float32 by name for fields "attribute:NAME", (...) or, of k

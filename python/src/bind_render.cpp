@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -34,13 +35,16 @@ double parse_number(const py::handle& value, const std::string& name, const Rang
 
 /// Changes what `camera` names of a scene's camera.
 void override_camera(const py::dict& camera, Scene& scene) {
+  // The default of a scene without a camera counts from (0, 0, 0).
+  if (!scene.camera_given)
+    scene.camera.from = scene.camera.from - scene.origin, scene.camera.at = scene.camera.at - scene.origin;
   for (const auto& [key, value] : camera) {
     const auto name = key.cast<std::string>();
     const std::string what = "camera['" + name + "']";
     if (name == "from")
-      scene.camera.from = parse_vector(value, what);
+      scene.camera.from = parse_vector(value, what) - scene.origin;
     else if (name == "at")
-      scene.camera.at = parse_vector(value, what);
+      scene.camera.at = parse_vector(value, what) - scene.origin;
     else if (name == "up")
       scene.camera.up = parse_vector(value, what);
     else if (name == "fov")
@@ -77,8 +81,22 @@ void override_whole(const Whole& given, const char* name, const Range& range, st
   out = static_cast<std::uint32_t>(*given);
 }
 
-/// A plane as an array that shares its memory with the picture.
-py::array plane_array(const std::shared_ptr<const Picture>& picture, const PicturePlane& plane) {
+/// One coordinate of positions in float64, from (0, 0, 0); 0 where the picture shows no surface.
+py::array far_plane(const Picture& picture, const PicturePlane& plane, double origin) {
+  DoubleArray array(ArrayShape{picture.height, picture.width});
+  double* const out = array.mutable_data();
+  const PicturePlane* const depths = picture.find("Z");
+  for (std::size_t i = 0; i < plane.values.size(); ++i)
+    out[i] = std::isfinite(depths->values[i]) ? origin + static_cast<double>(plane.values[i]) : 0;
+  return array;
+}
+
+/// A plane as an array that shares its memory with the picture, unless it holds positions that count from
+/// `origin`.
+py::array plane_array(const std::shared_ptr<const Picture>& picture, const PicturePlane& plane,
+                      const Vec3d& origin) {
+  if (plane.name.starts_with("P.") && !(origin == Vec3d{}))
+    return far_plane(*picture, plane, origin[plane.name[2] - 'X']);
   const py::capsule owner(new std::shared_ptr<const Picture>(picture),
                           [](void* p) { delete static_cast<std::shared_ptr<const Picture>*>(p); });
   const ArrayShape shape{picture->height, picture->width};
@@ -87,19 +105,19 @@ py::array plane_array(const std::shared_ptr<const Picture>& picture, const Pictu
   return py::array_t<float>(shape, plane.values.data(), owner);
 }
 
-py::dict planes_of(const std::shared_ptr<const Picture>& picture,
+py::dict planes_of(const std::shared_ptr<const Picture>& picture, const Vec3d& origin,
                    const std::optional<std::vector<std::string>>& wanted) {
   py::dict planes;
   std::string known;
   for (const PicturePlane& plane : picture->planes) {
     known += (known.empty() ? "" : ", ") + plane.name;
-    if (!wanted) planes[py::str(plane.name)] = plane_array(picture, plane);
+    if (!wanted) planes[py::str(plane.name)] = plane_array(picture, plane, origin);
   }
   if (!wanted) return planes;
   for (const std::string& name : *wanted) {
     const PicturePlane* plane = picture->find(name);
     if (plane == nullptr) throw py::value_error("planes: the picture has no '" + name + "'; it has " + known);
-    planes[py::str(name)] = plane_array(picture, *plane);
+    planes[py::str(name)] = plane_array(picture, *plane, origin);
   }
   return planes;
 }
@@ -140,9 +158,11 @@ py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height
   override_whole(seed, "seed", kAnySeed, scene.integrator.seed);
   if (integrator) scene.integrator.kind = parse_integrator(*integrator);
   if (camera) override_camera(*camera, scene);
+  say_lost_digits(store);
 
   const bool data_layers = !wanted || !std::all_of(wanted->begin(), wanted->end(), is_colour);
-  return planes_of(render_picture(store, std::move(scene), data_layers, progress), wanted);
+  const Vec3d origin = scene.origin;
+  return planes_of(render_picture(store, std::move(scene), data_layers, progress), origin, wanted);
 }
 
 /// What a notebook shows of a scene: its picture, with few pixels and samples. None if it cannot be rendered.
@@ -175,7 +195,8 @@ progress: called with the finished part, 0 to 1, about twenty times a second.
 Returns a dict of arrays (height, width), row 0 on top: "R", "G", "B" (float32, linear, premultiplied by "A"),
 "A", "Z" (depth), "N.X" (normals), "P.X" (positions), "Albedo.R", "u", "v", "primID.I", "geomID.I" (uint32) and
 others, named as in EXR files. The numbers are those that `oktett render` writes to an EXR file, which rounds
-R, G, B and A to 16 bits.
+R, G, B and A to 16 bits. But positions of scenes that have an origin are float64 and count from (0, 0, 0),
+those in files from the origin, which is their attribute "origin".
 
 Ctrl-C stops it. Raises ValueError for arguments out of range.)";
 

@@ -19,7 +19,7 @@ using StorePointer = std::shared_ptr<SceneStore>;
 using FileBytes = std::map<std::string, py::bytes>;
 
 /// Grows with what pickles hold.
-constexpr int kPickleVersion = 2;
+constexpr int kPickleVersion = 3;
 
 const std::pair<const char*, BuildQuality> kQualities[] = {
     {"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}};
@@ -169,10 +169,24 @@ StorePointer unpickled(const py::tuple& state) {
 }
 
 py::object scene_bounds(SceneStore& scene) {
-  const Box box = world_of(scene)->bounds;
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const Box& box = world->bounds;
   if (!(box.lo.x <= box.hi.x)) return py::none();
-  py::array_t<float> result(ArrayShape{2, 3});
-  for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = box.lo[k], result.mutable_at(1, k) = box.hi[k];
+  if (world->origin == Vec3d{}) {
+    FloatArray result(ArrayShape{2, 3});
+    for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = box.lo[k], result.mutable_at(1, k) = box.hi[k];
+    return result;
+  }
+  const Vec3d lo = world->origin + Vec3d(box.lo), hi = world->origin + Vec3d(box.hi);
+  DoubleArray result(ArrayShape{2, 3});
+  for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = lo[k], result.mutable_at(1, k) = hi[k];
+  return result;
+}
+
+py::array scene_origin(SceneStore& scene) {
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  DoubleArray result(3);
+  for (int k = 0; k < 3; ++k) result.mutable_at(k) = world->origin[k];
   return result;
 }
 
@@ -236,7 +250,8 @@ void bind_making(SceneClass& scene) {
       "uvs"_a = none, "colors"_a = none, "attributes"_a = none, "material"_a = none,
       R"(Adds a triangle mesh and returns the number of the new object.
 
-vertices: numbers of shape (n, 3), rounded to float32.
+vertices: numbers of shape (n, 3), rounded to float32. From those more than 128 times their extent away from
+    (0, 0, 0) a centre is taken off in float64 before, and added to the places that queries return: see origin.
 faces: whole numbers of shape (m, 3), indices into vertices. Corners run counter-clockwise seen from outside.
 transform: a matrix of shape (3, 4) or (4, 4) that maps columns (x, y, z, 1) to the space of the scene.
 normals: shape (n, 3), of vertices, or (m, 3, 3), of the corners of faces. Zero or not finite: none.
@@ -260,10 +275,17 @@ const Files& files() {
   return *entry.get_pointer<const Files>();
 }
 
-std::shared_ptr<const World> world_of(SceneStore& scene) {
-  std::shared_ptr<const World> world = scene.built_world();
-  if (world == nullptr) run_watched([&] { world = scene.world(); });
+std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene) {
+  std::shared_ptr<const PlacedWorld> world = scene.built_world();
+  if (world != nullptr) return world;
+  run_watched([&] { world = scene.world(); });
+  say_lost_digits(scene);
   return world;
+}
+
+void say_lost_digits(SceneStore& scene) {
+  for (const std::string& words : scene.take_lost_digits())
+    if (PyErr_WarnEx(PyExc_UserWarning, words.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 void bind_scene(SceneClass& scene) {
@@ -274,7 +296,11 @@ void bind_scene(SceneClass& scene) {
   scene.def_property_readonly(
       "bounds", scene_bounds,
       "float32 (2, 3): the least and the greatest corner of the box around everything "
-      "that is bounded; None if nothing is.");
+      "that is bounded; None if nothing is. float64 if the scene has an origin.");
+  scene.def_property_readonly(
+      "origin", scene_origin,
+      "float64 (3,): the place that is taken off all that lies far from (0, 0, 0), in "
+      "float64 before it is rounded to float32; zeros for other scenes.");
   scene.def_property_readonly(
       "objects", object_names,
       "The names of all objects by their numbers: through the prototypes in order, then "

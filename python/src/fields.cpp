@@ -52,6 +52,15 @@ std::vector<AttributeColumn> attribute_columns(const Fields& fields, const World
   return columns;
 }
 
+void make_places(py::dict& result, const char* name, const Fields& wanted, const ArrayShape& shape,
+                 const Vec3d& origin, PlaceColumn& column) {
+  column.origin = origin;
+  if (origin == Vec3d{})
+    column.floats = make_column(result, name, wanted, shape, 3, column.floats);
+  else
+    column.doubles = make_column(result, name, wanted, shape, 3, column.doubles);
+}
+
 void put_attributes(py::dict& result, const std::vector<AttributeColumn>& columns, const Fields& fields,
                     const std::function<py::object(std::size_t)>& make) {
   result["color"] = py::none(), result["attributes"] = py::none();

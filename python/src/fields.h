@@ -32,6 +32,11 @@ void make_attributes(py::dict& result, const ArrayShape& shape, std::vector<Attr
 void put_attributes(py::dict& result, const std::vector<AttributeColumn>& columns, const Fields& fields,
                     const std::function<py::object(std::size_t)>& make);
 
+/// Puts a new array of places, shape (..., 3), into `result` and has the column lie there: in float64 if the
+/// world counts from an `origin`, else in float32. None if the field is not wanted.
+void make_places(py::dict& result, const char* name, const Fields& wanted, const ArrayShape& shape,
+                 const Vec3d& origin, PlaceColumn& column);
+
 /// Puts a new array of `shape`, with `components` as its last dimension if that is not 0, into `result` and
 /// returns where it lies; None and null if the field is not wanted. The last argument tells the type.
 template <class T>

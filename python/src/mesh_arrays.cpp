@@ -10,10 +10,13 @@
 #include <string>
 #include <utility>
 
+#include "core/far_mesh.h"
+
 namespace oktett::python {
 namespace {
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec2f) == 2 * sizeof(float));
+static_assert(sizeof(Vec3d) == 3 * sizeof(double));
 
 template <class T>
 void copy_to(const T* from, std::size_t count, void* to) {
@@ -176,17 +179,29 @@ void set_bytes(const py::handle& value, Column<T>& column) {
 
 }  // namespace
 
+/// Those that lie far from the origin count from a place near them.
+static void place_vertices(const py::array& vertices, TriangleMesh& mesh) {
+  const auto count = static_cast<std::size_t>(vertices.shape(0));
+  if (!holds_floats(vertices)) {
+    const DoubleArray positions = to_doubles(vertices);
+    return set_positions({reinterpret_cast<const Vec3d*>(positions.data()), count}, mesh);
+  }
+  const FloatArray positions = floats_from({}, vertices);
+  mesh.positions.resize_uninitialized(count);
+  copy_to(positions.data(), 3 * count, mesh.positions.data());
+  if (const std::optional<Vec3d> centre = far_centre(mesh.positions, true)) take_off(*centre, mesh);
+}
+
 std::shared_ptr<const TriangleMesh> make_mesh(const MeshArrays& arrays) {
-  const FloatArray positions = float_rows(arrays.vertices, "vertices", 3);
+  const py::array positions = number_rows(arrays.vertices, "vertices", 3);
   if (positions.ndim() != 2)
     throw py::value_error("vertices: expected an array of numbers of shape (n, 3), found the shape " +
                           shape_text(positions));
   const auto count = static_cast<std::size_t>(positions.shape(0));
   const auto indices = triangle_rows(arrays.faces, count);
   auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions.resize_uninitialized(count);
   mesh->indices.resize_uninitialized(static_cast<std::size_t>(indices.size()));
-  copy_to(positions.data(), 3 * count, mesh->positions.data());
+  place_vertices(positions, *mesh);
   copy_to(indices.data(), mesh->indices.size(), mesh->indices.data());
   set_normals(arrays.normals, *mesh);
   set_uvs(arrays.uvs, *mesh);
@@ -202,7 +217,7 @@ py::tuple columns_of(const TriangleMesh& mesh) {
                                      bytes_of(a.srgb)));
   return py::make_tuple(bytes_of(mesh.positions), bytes_of(mesh.indices), bytes_of(mesh.normals),
                         bytes_of(mesh.normal_indices), bytes_of(mesh.uvs), bytes_of(mesh.uv_indices),
-                        attributes);
+                        attributes, py::make_tuple(mesh.origin.x, mesh.origin.y, mesh.origin.z));
 }
 
 std::shared_ptr<const TriangleMesh> mesh_of(const py::tuple& columns) {
@@ -219,6 +234,8 @@ std::shared_ptr<const TriangleMesh> mesh_of(const py::tuple& columns) {
     set_bytes(given[3], a.floats), set_bytes(given[4], a.srgb);
     mesh->attributes.push_back(std::move(a));
   }
+  const auto origin = columns[7].cast<py::tuple>();
+  for (int k = 0; k < 3; ++k) mesh->origin[k] = origin[static_cast<std::size_t>(k)].cast<double>();
   return mesh;
 }
 

@@ -55,7 +55,11 @@ void closest_points(const World& world, const float* points, std::size_t begin, 
   closest.distance = hits.t, closest.u = hits.u, closest.v = hits.v;
   closest.item = hits.item, closest.instance = hits.instance;
   closest_point(*world.accel, asked, closest);
-  copy_rows(columns.point, size, out.point ? out.point + 3 * begin : nullptr);
+  for (std::size_t i = 0; i < size && out.point; ++i)
+    if (hits.item[i] == kNoId)
+      out.point.set_miss(begin + i);
+    else
+      out.point.set(begin + i, {columns.point[0][i], columns.point[1][i], columns.point[2][i]});
   copy_rows(columns.normal, size, out.hit.normal ? out.hit.normal + 3 * begin : nullptr);
   HitColumns named = out.hit;
   named.normal = nullptr;

@@ -14,8 +14,8 @@ namespace oktett::python {
 /// Where nearest points go. A column that is null is not wanted.
 struct ClosestColumns {
   float* distance = nullptr;
-  float* point = nullptr;  ///< 3 per point
-  HitColumns hit;          ///< what was found there; `t` and `position` are null
+  PlaceColumn point;
+  HitColumns hit;  ///< what was found there; `t` and `position` are not wanted
 };
 
 /// The nearest points of all surfaces for points [begin, end), each three floats. A miss has the distance

@@ -52,10 +52,8 @@ class HitDescriber {
     if (out_.object) out_.object[to] = kNoId;
     if (out_.primitive) out_.primitive[to] = kNoId;
     if (out_.uv) out_.uv[2 * to] = out_.uv[2 * to + 1] = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (out_.normal) out_.normal[3 * to + k] = 0;
-      if (out_.position) out_.position[3 * to + k] = 0;
-    }
+    for (int k = 0; k < 3 && out_.normal; ++k) out_.normal[3 * to + k] = 0;
+    if (out_.position) out_.position.set_miss(to);
     set_carried(to, {});
   }
 
@@ -133,11 +131,13 @@ class HitDescriber {
     if (count == 0) return;
     static thread_local InteractionBlock block;
     surface_interactions(accel_, rays_, hits_, {which, count}, block);
-    for (std::size_t n = 0; n < count; ++n)
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (out_.normal) out_.normal[3 * places_[which[n]] + k] = block.geometric_normal[k][n];
-        if (out_.position) out_.position[3 * places_[which[n]] + k] = block.position[k][n];
-      }
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::size_t to = places_[which[n]];
+      for (std::size_t k = 0; k < 3 && out_.normal; ++k)
+        out_.normal[3 * to + k] = block.geometric_normal[k][n];
+      if (out_.position)
+        out_.position.set(to, {block.position[0][n], block.position[1][n], block.position[2][n]});
+    }
   }
 
   /// Where the corners of a triangle are found.
@@ -228,7 +228,7 @@ void all_hits(const World& world, const RayRows& rays, Places places, const HitC
   out.instance = sized(lists.instance, wanted.instance, count);
   out.uv = sized(lists.uv, wanted.uv, 2 * count);
   out.normal = sized(lists.normal, wanted.normal, 3 * count);
-  out.position = sized(lists.position, wanted.position, 3 * count);
+  out.position.floats = sized(lists.position, wanted.position.floats, 3 * count);
   out.texcoord = sized(lists.texcoord, wanted.texcoord, 2 * count);
   out.attributes = wanted.attributes;
   lists.attributes.resize(out.attributes.size());

@@ -32,15 +32,40 @@ struct AttributeColumn {
   float* values = nullptr;
 };
 
+/// Where places go, three numbers each: as floats that count from (0, 0, 0), or, in a world that has an
+/// origin, as doubles.
+struct PlaceColumn {
+  float* floats = nullptr;
+  double* doubles = nullptr;  ///< instead
+  Vec3d origin{};             ///< what is added to these
+
+  explicit operator bool() const { return floats != nullptr || doubles != nullptr; }
+  /// Place `i`; of a miss 0.
+  void set(std::size_t i, const Vec3f& place) const {
+    for (int k = 0; k < 3; ++k)
+      if (doubles != nullptr)
+        doubles[3 * i + k] = origin[k] + static_cast<double>(place[k]);
+      else
+        floats[3 * i + k] = place[k];
+  }
+  void set_miss(std::size_t i) const {
+    for (int k = 0; k < 3; ++k)
+      if (doubles != nullptr)
+        doubles[3 * i + k] = 0;
+      else
+        floats[3 * i + k] = 0;
+  }
+};
+
 /// Where the answers of hits go. A column that is null is not wanted.
 struct HitColumns {
   float* t = nullptr;
   std::uint32_t* object = nullptr;
   std::uint32_t* primitive = nullptr;
   std::uint32_t* instance = nullptr;
-  float* uv = nullptr;        ///< 2 per hit
-  float* normal = nullptr;    ///< 3 per hit
-  float* position = nullptr;  ///< 3 per hit
+  float* uv = nullptr;      ///< 2 per hit
+  float* normal = nullptr;  ///< 3 per hit
+  PlaceColumn position;
   float* texcoord = nullptr;  ///< 2 per hit
   std::vector<AttributeColumn> attributes;
 };

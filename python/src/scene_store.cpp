@@ -14,6 +14,7 @@
 #include "render/append_materials.h"
 #include "render/look/default_look.h"
 #include "render/material.h"
+#include "render/recentre.h"
 
 namespace oktett::python {
 namespace {
@@ -153,6 +154,9 @@ std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
   shape.mesh = added.mesh;
   object.shape = std::move(shape);
   object.transform = added.transform;
+  place_mesh(object);
+  if (!(scene_.origin == Vec3d{}))
+    object.transform = Affine::translation(scene_.origin * -1.0) * object.transform;
   object.name = added.name;
   if (material) object.material = append_material(std::move(*material));
   if (!added.material_name.empty()) object.material = material_of(scene_, added.material_name);
@@ -163,12 +167,12 @@ std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
   return number;
 }
 
-std::shared_ptr<const World> SceneStore::built_world() const {
+std::shared_ptr<const PlacedWorld> SceneStore::built_world() const {
   const std::lock_guard lock(mutex_);
   return world_;
 }
 
-std::shared_ptr<const World> SceneStore::world() {
+std::shared_ptr<const PlacedWorld> SceneStore::world() {
   const std::lock_guard build(building_);
   Scene scene;
   BuildOptions options;
@@ -178,7 +182,8 @@ std::shared_ptr<const World> SceneStore::world() {
     if (world_ != nullptr) return world_;
     scene = scene_, options.quality = quality_, changes = changes_;
   }
-  auto world = std::make_shared<const World>(build_world(scene, options));
+  recentre(scene);
+  auto world = std::make_shared<const PlacedWorld>(PlacedWorld{build_world(scene, options), scene.origin});
   const std::lock_guard lock(mutex_);
   if (changes == changes_) world_ = world;
   return world;
@@ -205,8 +210,22 @@ std::uint32_t SceneStore::object_count() const {
 }
 
 Scene SceneStore::scene() const {
+  Scene scene;
+  {
+    const std::lock_guard lock(mutex_);
+    scene = scene_;
+  }
+  recentre(scene);
+  return scene;
+}
+
+std::vector<std::string> SceneStore::take_lost_digits() {
+  std::vector<std::string> unsaid;
+  const std::vector<Warning> found = find_lost_digits(scene());
   const std::lock_guard lock(mutex_);
-  return scene_;
+  for (const Warning& warning : found)
+    if (said_.insert(warning.message).second) unsaid.push_back(warning.message);
+  return unsaid;
 }
 
 std::vector<AddedMesh> SceneStore::added() const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct AddedMesh {
   FileContents material_contents() const;
 };
 
+/// What is traced, and the place from which it counts: Scene::origin.
+struct PlacedWorld : World {
+  Vec3d origin;
+};
+
 /// Images of some textures of a scene, from its texture number `first` on.
 struct TexturePart {
   std::size_t first;
@@ -56,12 +62,15 @@ class SceneStore {
   std::uint32_t add(AddedMesh added, const Files& (*reader)());
 
   /// Waits while another thread builds.
-  std::shared_ptr<const World> world();
+  std::shared_ptr<const PlacedWorld> world();
   /// Null if it has to be built. Never waits.
-  std::shared_ptr<const World> built_world() const;
+  std::shared_ptr<const PlacedWorld> built_world() const;
   /// The images of the scene's textures, read by the first call; null if the scene was not read from files.
   std::shared_ptr<const TextureSampler> textures();
+  /// With all that was added, and near the place from which it counts if it lies far from the origin.
   Scene scene() const;
+  /// What find_lost_digits warns of and was not returned before.
+  std::vector<std::string> take_lost_digits();
   std::uint32_t object_count() const;
 
   /// What load() has to be given so that it makes the same scene, whatever becomes of the files. Throws Error
@@ -95,10 +104,11 @@ class SceneStore {
   std::map<std::string, FileState> read_;  ///< those that were read from the disk
   std::vector<AddedMesh> added_;
   BuildQuality quality_ = BuildQuality::balanced;
-  std::shared_ptr<const World> world_;  ///< null: to be built
+  std::shared_ptr<const PlacedWorld> world_;  ///< null: to be built
   std::shared_ptr<const TextureSampler> textures_;
   std::size_t own_textures_ = 0;  ///< those that were read with the scene
   TextureParts added_textures_;   ///< of materials that were added
+  std::set<std::string> said_;    ///< of the warnings of lost digits
 };
 
 /// How many numbers build_world gives to the objects of `scene`.
