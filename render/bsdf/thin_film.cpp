@@ -81,12 +81,12 @@ struct Passing {
     const double a2 = first * first, b2 = std::min(norm(second), 1.0);
     through = (1 - a2) * (1 - b2), sum = 1 + a2 * b2;
     re = 2 * first * second.re, im = 2 * first * second.im;
-    mean = through > 0 ? through / (1 - a2 * b2) : 0;
+    mean = part_of(1 - a2 * b2);
   }
   Passing() = default;
-  double at(double cosine, double sine) const {
-    return through > 0 ? through / (sum + re * cosine - im * sine) : 0;
-  }
+  double at(double cosine, double sine) const { return part_of(sum + re * cosine - im * sine); }
+  /// At most 1, also where both are rounded, as along the surface.
+  double part_of(double all) const { return through > 0 ? through / std::max(all, through) : 0; }
 };
 
 }  // namespace

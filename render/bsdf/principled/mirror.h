@@ -136,6 +136,7 @@ struct MetalMultipleSurface {
 template <class D>
 class MetalMultipleLobe {
  public:
+  using M = typename D::M;
   using Surface = MetalMultipleSurface;
   static constexpr int kChances = 1;
 
@@ -146,9 +147,14 @@ class MetalMultipleLobe {
     const D metal = arriving.all * D(v.base->metal);
     facets_ = SeenFacets<D>(v.wo, s.lobe.alpha());
     weight_ = metal * s.lobe.scale(v.wo.z);
-    const D lost = D(1.0) - v.base->mirror_albedo(v.wo);
-    // The lobe has the albedo of what facets lose that are as wide everywhere.
-    if (v.base->facets.stretched()) weight_ = weight_ * (lost / (D(1.0) - v.base->mirror(v.wo.z)));
+    D lost = D(1.0) - v.base->mirror_albedo(v.wo);
+    if (v.base->facets.stretched()) {
+      // The lobe has the albedo of what facets lose that are as wide everywhere.
+      const D even = D(1.0) - v.base->mirror(v.wo.z);
+      const M some = even > D(0.0);
+      lost = select(some, lost, D(0.0));
+      weight_ = select(some, weight_ * (lost / even), D(0.0));
+    }
     *chance = metal * lost * D(s.most);
   }
 
