@@ -113,7 +113,7 @@ class ObjLoad {
       const ObjCounts& counts = chunk.counts;
       if (counts.positions + counts.uvs + counts.normals + counts.painted == 0) return;
       read_vertices(chunk, obj_.mesh, colors_);
-      if (counts.faces + counts.strokes == 0) file_.release(chunk.begin, chunk.end);
+      if (counts.faces == 0 && !chunk.has_strokes) file_.release(chunk.begin, chunk.end);
     };
     for_each_chunk(read);
     sum_colors();
@@ -184,7 +184,7 @@ class ObjLoad {
   void read_all_faces() {
     const ObjFaceOptions options{.positions_known = !first_failure()};
     for_each_chunk([&](ObjChunk& chunk) {
-      if (chunk.counts.faces + chunk.counts.strokes == 0) return;
+      if (chunk.counts.faces == 0 && !chunk.has_strokes) return;
       read_faces(chunk, total_, obj_, options);
       file_.release(chunk.begin, chunk.end);
     });

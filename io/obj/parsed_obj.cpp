@@ -131,9 +131,10 @@ const char* count_line(ObjChunk& chunk, const char* p) {
     ++chunk.counts.normals;
   else if (p[0] == 'v' && p[1] == 't' && is_delimiter(p + 2))
     ++chunk.counts.uvs;
-  else if (is_stroke(p))
+  else if (is_stroke(p)) {
+    chunk.has_strokes = true;
     chunk.counts.strokes += stroke_count(p[0], count_words(p) - 1);
-  else if (p[0] == '#')
+  } else if (p[0] == '#')
     note_comment(chunk, p);
   else if (!is_line_end(p[0]))
     note_statement(chunk, p);

@@ -82,12 +82,13 @@ struct ObjChunk {
 
   const char* begin = nullptr;
   const char* end = nullptr;
-  ObjCounts counts;         ///< within the chunk
-  ObjCounts before;         ///< in all chunks before it
-  bool has_slash = false;   ///< some face refers to normals or uvs
-  bool has_colors = false;  ///< its first vertex has one
-  bool has_levels = false;  ///< which is one of bytes
-  ObjColors colors;         ///< found in the second pass
+  ObjCounts counts;          ///< within the chunk
+  ObjCounts before;          ///< in all chunks before it
+  bool has_slash = false;    ///< some face refers to normals or uvs
+  bool has_strokes = false;  ///< some line is a `p` or `l`, of whatever vertices
+  bool has_colors = false;   ///< its first vertex has one
+  bool has_levels = false;   ///< which is one of bytes
+  ObjColors colors;          ///< found in the second pass
   std::vector<ObjMaterialUse> material_uses;
   std::vector<ObjLibrary> libraries;
   std::vector<ObjSkipped> skipped;  ///< each keyword once, in order; not many more than kMaxSkippedKeywords

@@ -228,9 +228,10 @@ TEST(PlyAttributes, OddOnesAreNoErrors) {
             (std::vector<std::uint8_t>{255, 0, 0, 0, 1, 2, 255, 0, 0}));
   EXPECT_EQ(files.error(start + "property float q\n" + end + "0 0 0 1\n1 0 0 x\n0 1 0 1\n3 0 1 2\n"),
             "a.ply:12:7: expected a number, found 'x'");
-  // Without faces nothing shows them.
-  EXPECT_TRUE(files.parse_bytes(start + "property float q\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n")
-                  .mesh.attributes.empty());
+  // Vertices without faces are points, which show them.
+  const ParsedMesh cloud =
+      files.parse_bytes(start + "property float q\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n");
+  EXPECT_EQ(values(cloud.mesh, "q"), (std::vector<float>{1, 2, 3}));
 }
 
 TEST(PlyAttributes, TakeNoMoreMemoryThanTheFileJustifies) {

@@ -133,9 +133,9 @@ inline std::string ply_bytes(const MeshModel& model, const PlyStyle& style = {})
   if (style.faces_first) describe_faces();
   describe_vertices();
   if (style.extras) {
-    out.element("edge", 2);
-    out.property(PlyType::int32, "vertex1");
-    out.property(PlyType::int32, "vertex2");
+    out.element("range", 2);
+    out.property(PlyType::int32, "first");
+    out.property(PlyType::int32, "last");
     out.element("nothing", 1000000000000);
   }
   if (!style.faces_first) describe_faces();
