@@ -84,12 +84,13 @@ WideBox box_of(const Object& object, const Prototypes& prototypes) {
 
 bool is_far(const WideBox& box) { return box.distance() > box.extent() * kFarExtents; }
 
-/// The centre of all objects, if they lie far.
-std::optional<Vec3d> far_centre_of(std::span<const Object> objects, const Prototypes& prototypes) {
+/// The centre of all objects and of the camera, if one is given, if they lie far.
+std::optional<Vec3d> far_centre_of(const Scene& scene) {
   for (const bool some : {true, false}) {
-    ObjectBoxes boxes(prototypes, some);
+    ObjectBoxes boxes(scene.prototypes, some);
     WideBox all;
-    for (const Object& object : objects) {
+    if (scene.camera_given) all.grow(scene.camera.from), all.grow(scene.camera.at);
+    for (const Object& object : scene.objects) {
       boxes.add(object, {}, all);
       if (all.extent() > 0 && surely_near(all)) return std::nullopt;
     }
@@ -180,8 +181,7 @@ void place_mesh(Object& object) {
 void recentre(Scene& scene) {
   if (!(scene.origin == Vec3d{})) return;
   std::optional<Vec3d> place = Recentring(scene.prototypes).move(scene.objects);
-  if (!place && (place = far_centre_of(scene.objects, scene.prototypes)))
-    Recentring::move(scene.objects, *place);
+  if (!place && (place = far_centre_of(scene))) Recentring::move(scene.objects, *place);
   if (!place) return;
   const Vec3d origin = *place;
   const Affine to = Affine::translation(origin * -1.0), from = Affine::translation(origin);

@@ -15,9 +15,9 @@ void place_mesh(Object& object);
 
 /// Moves a scene that lies far from the origin near to it, and sets Scene::origin to the place from which all
 /// counts then: where the first object stands that is far and holds a mesh that is far in its file; if there
-/// is none but all that has bounds lies far (far_centre), the centre of that. Combinations and prototypes
-/// that hold such meshes are moved in their own spaces, and the transforms of what shows them the other way.
-/// Does nothing to a scene that has an origin.
+/// is none but all that has bounds lies far (far_centre), with the camera if one is given, the centre of
+/// that. Combinations and prototypes that hold such meshes are moved in their own spaces, and the transforms
+/// of what shows them the other way. Does nothing to a scene that has an origin.
 void recentre(Scene& scene);
 
 /// A warning of the objects whose details rays cannot find, since they lie so far from where the scene counts

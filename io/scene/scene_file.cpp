@@ -381,10 +381,13 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
         Warning{Location{path, 0, 0}, "no triangle of the mesh has an area: there is nothing to be seen"});
   scene.camera.up = up_of(path, *entry.mesh);
   scene.background = kPlainBackground;
+  std::vector<MeshShape> strokes = entry.stroke_shapes(gltf.stroke_width, Location{path}, scene.warnings);
+  scene.origin = has_triangles ? entry.mesh->origin : strokes[0].mesh->origin;
   const auto add = [&](MeshShape shape) {
     Object object;
     object.shape = std::move(shape);
     place_mesh(object);
+    object.transform = Affine::translation(scene.origin * -1.0) * object.transform;
     object.name = std::filesystem::path(without_packing(path)).stem().string();
     object.where = {path, 0, 0};
     show_colors(scene, object);
@@ -393,9 +396,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   // glTF 2.0, 3.7.2.1: without normals triangles are flat.
   const bool smooth = !is_gltf_file(path) || !entry.mesh->normals.empty();
   if (has_triangles) add({entry.mesh, entry.slot_materials, smooth});
-  for (MeshShape& strokes : entry.stroke_shapes(gltf.stroke_width, Location{path}, scene.warnings))
-    add(std::move(strokes));
-  recentre(scene);
+  for (MeshShape& each : strokes) add(std::move(each));
   return scene;
 }
 

@@ -128,7 +128,10 @@ TEST(Gltf, WholeNumbersStandForParts) {
     if (normalized) most = number == kInt8 ? 127 : number == kUint8 ? 255 : number == kInt16 ? 32767 : 65535;
     for (std::size_t i = 0; i < 9; ++i) {
       const double expected = std::max(static_cast<double>(values[i]) / most, normalized ? -1.0 : -1e9);
-      EXPECT_EQ(mesh.positions[i / 3][static_cast<int>(i % 3)], static_cast<float>(expected)) << number;
+      const int k = static_cast<int>(i % 3);
+      EXPECT_EQ(static_cast<float>(mesh.origin[k] + static_cast<double>(mesh.positions[i / 3][k])),
+                static_cast<float>(expected))
+          << number;
     }
   };
   for (const bool normalized : {false, true}) {

@@ -284,7 +284,8 @@ TEST(SceneError, MissingFiles) {
       {"objects: [{mesh: {file: none.obj}}]", "scene.yaml:2:25: 'none.obj': no such file"},
       {"objects: [{mesh: {file: .}}]", "scene.yaml:2:25: '.': is a directory"},
       {"objects: [{mesh: {file: scene.yaml}}]",
-       "scene.yaml:2:25: unknown kind of mesh file; expected .obj, .ply, .stl, .off, .gltf or .glb, also "
+       "scene.yaml:2:25: unknown kind of mesh file; expected .obj, .ply, .stl, .off, .3mf, .gltf or .glb, "
+       "also "
        "packed as "
        ".gz"},
       {"objects: [{mesh: {file: \"scene.yaml\\0.obj\"}}]", "scene.yaml:2:25: not a path"},

@@ -336,7 +336,7 @@ TEST(LoadScene, ChoosesByExtension) {
   } catch (const Error& e) {
     EXPECT_EQ(files.without_directory(e.what()),
               "a.3ds: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj, .ply, .stl, "
-              ".off, .gltf or .glb, also packed as .gz)");
+              ".off, .3mf, .gltf or .glb, also packed as .gz)");
     EXPECT_EQ(e.kind(), ErrorKind::bad_input);
   }
 }

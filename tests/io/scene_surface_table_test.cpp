@@ -27,6 +27,7 @@ std::string usual_words(const DescribedParameter& p) {
 /// A value for each parameter whose default is no value.
 std::string sample(const std::string& surface, const DescribedParameter& p) {
   static const Values kSamples = {{"mesh.file", "a.obj"},
+                                  {"mesh.stroke_width", "0.1"},
                                   {"metaballs.file", "balls.txt"},
                                   {"metaballs.balls", "[{}]"},
                                   {"metaballs.elements", "[{point: [0, 0, 0]}]"},
