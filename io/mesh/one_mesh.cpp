@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/far_mesh.h"
-#include "core/parallel.h"
 #include "io/mesh/file_scene.h"
+#include "io/mesh/for_all.h"
 #include "io/mesh/reading.h"
 #include "io/mesh/rounding.h"
 
@@ -41,14 +41,6 @@ Sizes placed(const FileScene& scene) {
   Sizes sizes;
   for (const PlacedMesh& placement : scene.placements) sizes.add(*scene.meshes[placement.mesh].mesh);
   return sizes;
-}
-
-/// Calls f(i) for all i below `count` at the same time.
-template <class F>
-void for_all(std::size_t count, const F& f) {
-  in_parts(count, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) f(i);
-  });
 }
 
 /// Puts what meshes carry behind each other. Where a mesh does not carry what another one does, it is white,

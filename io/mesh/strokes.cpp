@@ -9,21 +9,11 @@
 #include <vector>
 
 #include "core/mesh_geometry.h"
-#include "core/parallel.h"
+#include "io/mesh/for_all.h"
 #include "io/mesh/mesh_output.h"
 
 namespace oktett {
 namespace {
-
-constexpr std::size_t kPerTask = std::size_t{1} << 16;
-
-/// Calls f(i) for all i below `count` at the same time.
-template <class F>
-void for_all(std::size_t count, const F& f) {
-  in_parts(count, kPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) f(i);
-  });
-}
 
 /// Elements of `components` numbers each, those with the numbers `used`.
 template <class T>
