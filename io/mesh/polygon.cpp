@@ -138,8 +138,8 @@ void PolygonTriangulator::link() {
 
 /// A corner that cannot be cut off is tried again when a neighbour was cut off, or when the corner that
 /// blocks it no longer does; nothing else changes the answer. A polygon that touches itself may have no ear
-/// by the strictest rule, then a more lenient one is taken; false if there is none by that, either. One that
-/// crosses itself is cut all the same.
+/// by the strictest rule, then a more lenient one is taken; false if there is none by that, either, or if it
+/// took for an ear what is none. One that crosses itself is cut all the same.
 bool PolygonTriangulator::clip_ears() {
   const std::size_t count = points_.size();
   find_blocking();
@@ -161,7 +161,8 @@ bool PolygonTriangulator::clip_ears() {
       try_again(corner);
     cut_in_rounds(Rule::no_overlap);
   }
-  if (remaining_ > 3 && !crosses_itself_) return false;
+  // Areas always add up, and only the last triangle can be turned over. If it is not, none overlap.
+  if (!crosses_itself_ && (remaining_ > 3 || turn(next_[last_]) < 0)) return false;
   std::int64_t budget = 64 * static_cast<std::int64_t>(count);
   while (remaining_ > 3 && twins_left_ > 0 && (budget -= static_cast<std::int64_t>(remaining_)) > 0) {
     if (!cut_one(Rule::flat) && !cut_one(Rule::convex)) cut_one(Rule::any);
