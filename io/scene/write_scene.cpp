@@ -9,6 +9,7 @@
 #include "io/scene/readers.h"
 #include "io/scene/shape_text.h"
 #include "kernels/heights/height_grid.h"
+#include "render/recentre.h"
 
 namespace oktett {
 namespace {
@@ -48,7 +49,8 @@ class SceneWriter {
   std::string text() {
     std::string out = "oktett: 1\n";
     const Camera& c = scene_.camera;
-    if (scene_.camera_given)
+    // With a camera near the origin a scene of far objects is not moved when it is read.
+    if (scene_.camera_given || would_move())
       out += fmt::format("camera: {{from: {}, at: {}, up: {}, fov: {}}}\n", vector_text(c.from),
                          vector_text(c.at), vector_text(c.up), c.fov);
     if (!scene_.prototypes.empty()) out += "define:\n";
@@ -59,6 +61,12 @@ class SceneWriter {
   }
 
  private:
+  bool would_move() const {
+    Scene copy = scene_;
+    recentre(copy);
+    return !(copy.origin == scene_.origin);
+  }
+
   std::string group(const std::vector<Object>& objects) {
     std::string out = "    group:\n";
     for (const Object& object : objects) out += "      - " + object_text(object) + "\n";

