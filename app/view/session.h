@@ -44,7 +44,7 @@ struct ViewState {
 ViewState parse_view(std::string_view text, ViewState state);
 
 /// The camera of a scene that counts from `origin` as the part of a scene file that gives the same camera,
-/// number by number. What moves it is left out.
+/// number by number where the origin is zero. What moves it is left out.
 std::string camera_yaml(Camera camera, const Vec3d& origin);
 
 // ---- Whether files have changed, by asking for their times and sizes.

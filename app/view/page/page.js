@@ -128,6 +128,9 @@ function pixelOf(event) {
     inside((event.clientY - box.top) / box.height, canvas.height)];
 }
 
+// Whether the scene counts from its own origin: the place is then the point, which is made of floats.
+const isNear = (found) => found.place.every((x, k) => Math.fround(x) === Math.fround(found.point[k]));
+
 async function pick(event) {
   const [x, y] = pixelOf(event);
   const answer = await fetch(`pick?x=${x}&y=${y}`);
@@ -138,7 +141,8 @@ async function pick(event) {
   if (!found.hit) rows.push(["meets", "nothing"]);
   else rows.push(["object", found.object_name ? `${found.object_name} (${found.object})` : found.object],
     ["surface", found.surface], ["material", found.material || "–"], ["primitive", found.primitive],
-    ["point", list(found.place, String(found.place) === String(found.point) ? 6 : 10)], ["normal", list(found.normal)], ["distance", found.t], ["depth", found.depth],
+    ["point", list(found.place, isNear(found) ? 6 : 10)], ["normal", list(found.normal)],
+    ["distance", found.t], ["depth", found.depth],
     ["u, v", list([found.u, found.v])]);
   $("pick").replaceChildren(...rows.flatMap(([name, value]) => {
     const dt = document.createElement("dt"), dd = document.createElement("dd");
