@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "app/text.h"
+#include "core/description.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -61,9 +62,10 @@ GltfOptions gltf_options(const GltfWords& words) {
   GltfOptions options;
   options.variant = words.variant;
   const std::string& width = words.stroke_width;
-  if (!width.empty() && (!parse_number(width, options.stroke_width) || !(options.stroke_width > 0) ||
-                         !(options.stroke_width <= 1e18)))
-    throw Error(fmt::format("--stroke-width: expected a length greater than 0, found '{}'", width));
+  if (!width.empty() &&
+      !(parse_number(width, options.stroke_width) && kPositive.contains(options.stroke_width)))
+    throw Error(fmt::format("--stroke-width: expected a length greater than 0 and at most {:g}, found '{}'",
+                            kMaxCoordinate, width));
   if (!words.time.empty()) options.time = seconds_of("--time", words.time);
   if (words.shutter.empty()) return options;
   if (!options.time) throw Error("--shutter needs --time or --frames");
