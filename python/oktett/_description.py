@@ -38,7 +38,8 @@ def _mesh_in_file(node: Dict[str, Any], files: Dict[str, bytes]) -> Dict[str, An
     rest = {key: value for key, value in node.items() if key not in ("vertices", "faces", *carried)}
     if "vertices" not in node or "faces" not in node or "file" in node:
         raise ValueError("mesh: expected both vertices and faces, or a file")
-    vertices = _rows(node["vertices"], "vertices", _type_of_places(node["vertices"]), "fiu")
+    places = np.asarray(node["vertices"])
+    vertices = _rows(places, "vertices", _type_of_places(places.dtype), "fiu")
     faces = _rows(node["faces"], "faces", "<i8", "iu")
     if faces.size and not (0 <= faces.min() and faces.max() < len(vertices)):
         raise ValueError(f"faces: expected indices of vertices, 0 to {len(vertices)} - 1")
@@ -132,9 +133,8 @@ def _records(columns: List[_Column], count: int, first: List[Any]) -> np.ndarray
     return records
 
 
-def _type_of_places(value: Any) -> str:
-    """The reader takes a centre off those that lie far from the origin before it rounds them."""
-    dtype = np.asarray(value).dtype
+def _type_of_places(dtype: Any) -> str:
+    """Doubles unless they are floats: the reader takes a centre off places far from the origin, then rounds."""
     return "<f4" if dtype.kind == "f" and dtype.itemsize <= 4 else "<f8"
 
 

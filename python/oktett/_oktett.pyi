@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequen
 import numpy as np
 import numpy.typing as npt
 
-from ._results import ClosestPoints, HitLists, Hits
+from ._results import ClosestPoints, HitLists, Hits, Places
 
 __version__: str
 
@@ -77,7 +77,7 @@ class Scene:
     ) -> int: ...
     def build(self) -> None: ...
     @property
-    def bounds(self) -> Optional[npt.NDArray[np.floating[Any]]]: ...
+    def bounds(self) -> Optional[Places]: ...
     @property
     def origin(self) -> npt.NDArray[np.float64]: ...
     @property

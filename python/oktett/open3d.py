@@ -37,9 +37,9 @@ class RaycastingScene:
     """Triangle meshes to ask with rays and points.
 
     Rays are of shape {.., 6}: origin and direction, which need not have length 1; distances count in its
-    lengths. Points are of shape {.., 3}. Both are float32; other numbers are converted. Where meshes lie far from
-    (0, 0, 0), see Scene.origin, that is taken off float64 before, and points that come back are float64. A miss has the distance
-    inf, the ids INVALID_ID and zeros else. Other shapes raise ValueError.
+    lengths. Points are of shape {.., 3}. Both are float32; other numbers are converted. Where the scene has an
+    origin (Scene.origin), float64 is rounded after it is taken off, and points that come back are float64. A miss
+    has the distance inf, the ids INVALID_ID and zeros else. Other shapes raise ValueError.
 
     nthreads is accepted and ignored: oktett.set_threads limits the threads.
     device: only the CPU; others raise ValueError. If it is an open3d.core.Device, answers are tensors.
@@ -123,7 +123,7 @@ class RaycastingScene:
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> Dict[str, Answer]:
         """The nearest point of all triangles: a dict of
 
-        points             float32 {.., 3} float64 if the scene has an origin
+        points             float32 {.., 3} the nearest point; float64 if the scene has an origin
         geometry_ids       uint32  {..}
         primitive_ids      uint32  {..}    triangle
         primitive_uvs      float32 {.., 2} barycentric weights of its second and third corner

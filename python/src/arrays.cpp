@@ -31,12 +31,6 @@ py::array number_array(py::handle value, const char* name, const std::string& ex
   return array;
 }
 
-FloatArray to_floats(const py::array& array) {
-  auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!floats) throw py::error_already_set();
-  return py::reinterpret_borrow<FloatArray>(floats);
-}
-
 }  // namespace
 
 std::string shape_text(const py::array& array) { return text_of(shape_of(array)); }
@@ -50,18 +44,12 @@ py::array number_rows(py::handle value, const char* name, py::ssize_t last) {
 }
 
 FloatArray float_rows(py::handle value, const char* name, py::ssize_t last) {
-  return to_floats(number_rows(value, name, last));
-}
-
-DoubleArray to_doubles(const py::array& rows) {
-  auto doubles = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(rows);
-  if (!doubles) throw py::error_already_set();
-  return py::reinterpret_borrow<DoubleArray>(doubles);
+  return dense<float>(number_rows(value, name, last));
 }
 
 FloatArray floats_from(const Vec3d& origin, const py::array& rows) {
-  if (origin == Vec3d{}) return to_floats(rows);
-  const DoubleArray from = to_doubles(rows);
+  if (origin == Vec3d{}) return dense<float>(rows);
+  const DoubleArray from = dense<double>(rows);
   FloatArray result(shape_of(rows));
   const py::ssize_t size = rows.size(), last = rows.shape(rows.ndim() - 1);
   const double* const in = from.data();
@@ -78,7 +66,7 @@ FloatArray float_each(py::handle value, const char* name, const ArrayShape& shap
   const std::string expected = "a number or an array of shape " + text_of(shape);
   const py::array array = number_array(value, name, expected);
   if (array.ndim() != 0 && shape_of(array) != shape) fail(name, expected, "the shape " + shape_text(array));
-  return to_floats(array);
+  return dense<float>(array);
 }
 
 py::array_t<std::uint32_t, py::array::c_style> triangle_rows(py::handle value, std::size_t vertices) {

@@ -18,6 +18,14 @@ using FloatArray = py::array_t<float, py::array::c_style>;
 using DoubleArray = py::array_t<double, py::array::c_style>;
 using ArrayShape = std::vector<py::ssize_t>;
 
+/// The array as one of T, C-contiguous. It is `array` itself if that is such a one, else a copy.
+template <class T>
+py::array_t<T, py::array::c_style> dense(const py::array& array) {
+  auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!result) throw py::error_already_set();
+  return py::reinterpret_borrow<py::array_t<T, py::array::c_style>>(result);
+}
+
 /// "(4, 6)".
 std::string shape_text(const py::array& array);
 
@@ -30,12 +38,6 @@ FloatArray float_rows(py::handle value, const char* name, py::ssize_t last);
 /// Rows that begin with a place, such as points or rays, in float32, with the place counted from `origin`,
 /// which is taken off in double. It is `rows` itself if nothing has to be changed.
 FloatArray floats_from(const Vec3d& origin, const py::array& rows);
-/// An array of number_rows in float64.
-DoubleArray to_doubles(const py::array& rows);
-/// Whether the numbers of an array are floats without being rounded.
-inline bool holds_floats(const py::array& array) {
-  return array.dtype().kind() == 'f' && array.itemsize() <= 4;
-}
 
 /// The dimensions of rows without the last one.
 ArrayShape row_shape(const py::array& rows);

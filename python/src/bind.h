@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <vector>
 
 #include "python/src/scene_store.h"
 
@@ -22,8 +23,8 @@ void bind_point_queries(SceneClass& scene);
 
 /// The structure of a scene, built without the interpreter's lock if that is still to be done.
 std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene);
-/// Warns, through Python, of objects so far away from others that rays lose their details; once of each
-/// cause.
-void say_lost_digits(SceneStore& scene);
+/// Warns, through Python, of objects so far away from others that rays lose their details (find_lost_digits);
+/// each text once.
+void say_lost_digits(SceneStore& scene, const std::vector<Warning>& lost);
 
 }  // namespace oktett::python

@@ -135,7 +135,7 @@ py::object joined(const std::vector<FoundHits>& pieces, std::vector<T> FoundHits
 /// Places of a world in float64 if they count from elsewhere; `places` itself, which may be None, if not.
 py::object placed(const py::object& places, const Vec3d& origin) {
   if (places.is_none() || origin == Vec3d{}) return places;
-  DoubleArray result = to_doubles(places);
+  DoubleArray result = dense<double>(places);
   double* const numbers = result.mutable_data();
   for (py::ssize_t i = 0; i < result.size(); ++i) numbers[i] += origin[static_cast<int>(i % 3)];
   return result;

@@ -15,15 +15,15 @@
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/unlocked.h"
+#include "render/recentre.h"
 
 namespace oktett::python {
 namespace {
 
 Vec3d parse_vector(const py::handle& value, const std::string& name) {
-  const FloatArray floats = float_rows(value, name.c_str(), 3);
-  if (floats.ndim() != 1) throw py::value_error(name + ": expected three numbers");
-  const auto numbers = py::cast<std::vector<double>>(py::array_t<double>::ensure(value));
-  return {numbers[0], numbers[1], numbers[2]};
+  const DoubleArray numbers = dense<double>(number_rows(value, name.c_str(), 3));
+  if (numbers.ndim() != 1) throw py::value_error(name + ": expected three numbers");
+  return {numbers.at(0), numbers.at(1), numbers.at(2)};
 }
 
 double parse_number(const py::handle& value, const std::string& name, const Range& range) {
@@ -158,7 +158,7 @@ py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height
   override_whole(seed, "seed", kAnySeed, scene.integrator.seed);
   if (integrator) scene.integrator.kind = parse_integrator(*integrator);
   if (camera) override_camera(*camera, scene);
-  say_lost_digits(store);
+  say_lost_digits(store, find_lost_digits(scene));
 
   const bool data_layers = !wanted || !std::all_of(wanted->begin(), wanted->end(), is_colour);
   const Vec3d origin = scene.origin;

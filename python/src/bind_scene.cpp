@@ -168,19 +168,20 @@ StorePointer unpickled(const py::tuple& state) {
   return store;
 }
 
+template <class T>
+py::array rows_array(const Vec3<T>& first, const Vec3<T>& second) {
+  py::array_t<T> result(ArrayShape{2, 3});
+  for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = first[k], result.mutable_at(1, k) = second[k];
+  return result;
+}
+
 py::object scene_bounds(SceneStore& scene) {
   const std::shared_ptr<const PlacedWorld> world = world_of(scene);
   const Box& box = world->bounds;
   if (!(box.lo.x <= box.hi.x)) return py::none();
-  if (world->origin == Vec3d{}) {
-    FloatArray result(ArrayShape{2, 3});
-    for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = box.lo[k], result.mutable_at(1, k) = box.hi[k];
-    return result;
-  }
-  const Vec3d lo = world->origin + Vec3d(box.lo), hi = world->origin + Vec3d(box.hi);
-  DoubleArray result(ArrayShape{2, 3});
-  for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = lo[k], result.mutable_at(1, k) = hi[k];
-  return result;
+  const Vec3d& origin = world->origin;
+  if (origin == Vec3d{}) return rows_array(box.lo, box.hi);
+  return rows_array(origin + Vec3d(box.lo), origin + Vec3d(box.hi));
 }
 
 py::array scene_origin(SceneStore& scene) {
@@ -198,7 +199,7 @@ std::vector<std::string> object_names(SceneStore& scene) {
 
 std::vector<std::string> warnings(const SceneStore& scene) {
   std::vector<std::string> lines;
-  for (const Warning& warning : scene.scene().warnings) lines.push_back(to_string(warning));
+  for (const Warning& warning : scene.warnings()) lines.push_back(to_string(warning));
   return lines;
 }
 
@@ -279,12 +280,12 @@ std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene) {
   std::shared_ptr<const PlacedWorld> world = scene.built_world();
   if (world != nullptr) return world;
   run_watched([&] { world = scene.world(); });
-  say_lost_digits(scene);
+  say_lost_digits(scene, world->lost_digits);
   return world;
 }
 
-void say_lost_digits(SceneStore& scene) {
-  for (const std::string& words : scene.take_lost_digits())
+void say_lost_digits(SceneStore& scene, const std::vector<Warning>& lost) {
+  for (const std::string& words : scene.take_unsaid(lost))
     if (PyErr_WarnEx(PyExc_UserWarning, words.c_str(), 1) != 0) throw py::error_already_set();
 }
 

@@ -99,13 +99,6 @@ py::array any_array(const py::handle& value, const std::string& name) {
   throw py::value_error(name + ": expected an array of numbers");
 }
 
-template <class T>
-py::array_t<T, py::array::c_style> dense(const py::array& array) {
-  auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!result) throw py::error_already_set();
-  return result;
-}
-
 void set_floats(const py::array& array, MeshAttribute& attribute) {
   const auto floats = dense<float>(array);
   attribute.floats.resize_uninitialized(static_cast<std::size_t>(floats.size()));
@@ -177,20 +170,21 @@ void set_bytes(const py::handle& value, Column<T>& column) {
   copy_to(bytes.data(), column.size() * sizeof(T), column.data());
 }
 
-}  // namespace
-
 /// Those that lie far from the origin count from a place near them.
-static void place_vertices(const py::array& vertices, TriangleMesh& mesh) {
+void place_vertices(const py::array& vertices, TriangleMesh& mesh) {
   const auto count = static_cast<std::size_t>(vertices.shape(0));
-  if (!holds_floats(vertices)) {
-    const DoubleArray positions = to_doubles(vertices);
+  const bool are_floats = vertices.dtype().kind() == 'f' && vertices.itemsize() <= 4;
+  if (!are_floats) {
+    const DoubleArray positions = dense<double>(vertices);
     return set_positions({reinterpret_cast<const Vec3d*>(positions.data()), count}, mesh);
   }
-  const FloatArray positions = floats_from({}, vertices);
+  const FloatArray positions = dense<float>(vertices);
   mesh.positions.resize_uninitialized(count);
   copy_to(positions.data(), 3 * count, mesh.positions.data());
   if (const std::optional<Vec3d> centre = far_centre(mesh.positions, true)) take_off(*centre, mesh);
 }
+
+}  // namespace
 
 std::shared_ptr<const TriangleMesh> make_mesh(const MeshArrays& arrays) {
   const py::array positions = number_rows(arrays.vertices, "vertices", 3);

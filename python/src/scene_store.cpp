@@ -183,7 +183,8 @@ std::shared_ptr<const PlacedWorld> SceneStore::world() {
     scene = scene_, options.quality = quality_, changes = changes_;
   }
   recentre(scene);
-  auto world = std::make_shared<const PlacedWorld>(PlacedWorld{build_world(scene, options), scene.origin});
+  auto world = std::make_shared<const PlacedWorld>(
+      PlacedWorld{build_world(scene, options), scene.origin, find_lost_digits(scene)});
   const std::lock_guard lock(mutex_);
   if (changes == changes_) world_ = world;
   return world;
@@ -219,11 +220,15 @@ Scene SceneStore::scene() const {
   return scene;
 }
 
-std::vector<std::string> SceneStore::take_lost_digits() {
-  std::vector<std::string> unsaid;
-  const std::vector<Warning> found = find_lost_digits(scene());
+std::vector<Warning> SceneStore::warnings() const {
   const std::lock_guard lock(mutex_);
-  for (const Warning& warning : found)
+  return scene_.warnings;
+}
+
+std::vector<std::string> SceneStore::take_unsaid(const std::vector<Warning>& warnings) {
+  std::vector<std::string> unsaid;
+  const std::lock_guard lock(mutex_);
+  for (const Warning& warning : warnings)
     if (said_.insert(warning.message).second) unsaid.push_back(warning.message);
   return unsaid;
 }

@@ -34,9 +34,10 @@ struct AddedMesh {
   FileContents material_contents() const;
 };
 
-/// What is traced, and the place from which it counts: Scene::origin.
+/// What is traced, the place from which it counts (Scene::origin), and what find_lost_digits warns of.
 struct PlacedWorld : World {
   Vec3d origin;
+  std::vector<Warning> lost_digits;
 };
 
 /// Images of some textures of a scene, from its texture number `first` on.
@@ -69,8 +70,10 @@ class SceneStore {
   std::shared_ptr<const TextureSampler> textures();
   /// With all that was added, and near the place from which it counts if it lies far from the origin.
   Scene scene() const;
-  /// What find_lost_digits warns of and was not returned before.
-  std::vector<std::string> take_lost_digits();
+  /// Those of reading.
+  std::vector<Warning> warnings() const;
+  /// The texts of `warnings` that were not returned before.
+  std::vector<std::string> take_unsaid(const std::vector<Warning>& warnings);
   std::uint32_t object_count() const;
 
   /// What load() has to be given so that it makes the same scene, whatever becomes of the files. Throws Error

@@ -160,7 +160,7 @@ def test_transforms_are_applied_in_float64(scan):
     assert np.abs(home.bounds - [vertices.min(axis=0), vertices.max(axis=0)]).max() < 2 * STEP
 
 
-def test_scenes_count_from_the_first_far_mesh_in_any_order(scan):
+def test_scenes_count_from_the_first_far_mesh(scan):
     vertices, faces = scan
     aside = np.array([4000.0, 0, 0])
     rays = np.concatenate([far_rays(rays_at(200, 7)), far_rays(rays_at(200, 8)) + np.concatenate([aside, np.zeros(3)])])
