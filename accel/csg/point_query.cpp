@@ -1,5 +1,7 @@
 #include "accel/point_query.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -303,7 +305,7 @@ void find_inside(const Accel& accel, const Points& points, std::span<std::uint8_
 template <class Points>
 void find_numbers(const Accel& accel, const Points& points, std::span<float> numbers, double error, Isa isa) {
   if (!(error >= 0x1p-20))
-    throw Error("winding_number: the error must be at least 2^-20, not " + std::to_string(error));
+    throw Error(fmt::format("winding_number: the error must be at least 2^-20, not {}", error));
   const WindingTest test(accel, isa);
   for_each_points(numbers.size(), [&](std::size_t begin, std::size_t end) {
     test.numbers(point_columns(points, begin, end - begin), numbers.data() + begin, error);

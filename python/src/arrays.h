@@ -26,6 +26,9 @@ py::array_t<T, py::array::c_style> dense(const py::array& array) {
   return py::reinterpret_borrow<py::array_t<T, py::array::c_style>>(result);
 }
 
+/// The fewest digits that give back the number.
+inline std::string number_text(double number) { return py::str(py::float_(number)); }
+
 /// "(4, 6)".
 std::string shape_text(const py::array& array);
 

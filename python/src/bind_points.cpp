@@ -70,7 +70,7 @@ py::array ask_inside(SceneStore& scene, py::handle points, const std::string& na
 
 py::array ask_winding_number(SceneStore& scene, py::handle points, double error) {
   if (!(error >= 0x1p-20))
-    throw py::value_error("error: expected a number of at least 2^-20, not " + std::to_string(error));
+    throw py::value_error("error: expected a number of at least 2^-20, not " + number_text(error));
   return ask_each<float>(scene, points,
                          [&](const World& world, const float* rows, auto begin, auto end, float* out) {
                            winding_numbers(world, rows, begin, end, error, out);

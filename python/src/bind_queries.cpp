@@ -24,7 +24,7 @@ class RayArguments {
     tmax_ = float_each(given_tmax, "tmax", shape);
     for (py::ssize_t i = 0; i < tmin_.size(); ++i)
       if (tmin_.data()[i] < 0)
-        throw py::value_error("tmin: expected no negative numbers, found " + std::to_string(tmin_.data()[i]));
+        throw py::value_error("tmin: expected no negative numbers, found " + number_text(tmin_.data()[i]));
   }
 
   /// The rays of a world, which may count from elsewhere.

@@ -1,5 +1,7 @@
 #include "render/photon/caustics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -88,13 +90,6 @@ std::uint64_t materials_hash(const RenderContext& context, const PhotonSource& s
   return hash.value();
 }
 
-std::string number_text(double x) {
-  std::string text = std::to_string(x);
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
 }  // namespace
 
 /// Hashes of what light meets in the scene: where some thousand rays hit and in which materials, how the
@@ -115,8 +110,7 @@ static SceneFingerprint fingerprint(std::span<const RenderContext> moments,
 /// What differs between the scene that a map was made for and this one, as one phrase; empty if nothing does.
 static std::string difference(const PhotonMap& map, const PhotonPlan& plan, const SceneFingerprint& scene) {
   const auto number = [](const char* what, double has, double wanted) {
-    return "it has " + std::string(what) + " " + number_text(has) + ", the scene wants " +
-           number_text(wanted);
+    return fmt::format("it has {} {}, the scene wants {}", what, has, wanted);
   };
   const PhotonPlan& has = map.plan;
   if (has.photons != plan.photons) return number("photons per pass:", has.photons, plan.photons);

@@ -174,7 +174,7 @@ def test_other_arguments_are_refused():
     for arguments, message in (
         ({"tmin": [1, 2]}, r"tmin: expected a number or an array of shape \(4,\), found the shape \(2,\)"),
         ({"tmax": "far"}, "tmax: expected a number"),
-        ({"tmin": -1}, "tmin: expected no negative numbers"),
+        ({"tmin": -0.25e-7}, "tmin: expected no negative numbers, found -2.5"),
         ({"fields": ["t", "colour"]}, "fields: there is no field 'colour'"),
     ):
         with pytest.raises(ValueError, match=message):
