@@ -8,10 +8,12 @@
 namespace oktett {
 
 MeshPoint StrokeParts::at(const SurfaceInteraction& surface, const Vec3d& place) const {
-  const bool is_ball = balls.empty() || surface.geometry == 0;
-  const std::uint32_t number = balls.empty() ? surface.primitive
-                               : is_ball     ? balls[surface.primitive]
-                                             : cylinders[surface.geometry - 1];
+  // Alone, the balls are no structure of their own, and `geometry` is where they stand in another one.
+  std::uint32_t number = surface.primitive;
+  if (!cylinders.empty() && surface.geometry > 0)
+    number = cylinders[surface.geometry - 1];
+  else if (!balls.empty())
+    number = balls[surface.primitive];
   const Vec3d from = corner(*strokes, number, 0), axis = corner(*strokes, number, 1) - from;
   const double square = dot(axis, axis);
   const double part = square > 0 ? std::clamp(dot(place - from, axis) / square, 0.0, 1.0) : 0;

@@ -10,19 +10,19 @@
 
 namespace oktett {
 
-/// What of which stroke the geometries of a mesh of points and lines show; see MeshShape::stroke_width.
+/// Which stroke each ball and cylinder of a mesh of points and lines belongs to; see MeshShape::stroke_width.
 struct StrokeParts {
   std::shared_ptr<const TriangleMesh> strokes;
-  /// Of ball k of the first geometry, the stroke that it ends; empty: each stroke is the ball of its number.
-  /// The geometries behind it are the strokes of `cylinders` in their order.
-  std::vector<std::uint32_t> balls, cylinders;
+  /// The stroke at whose end ball k of the first geometry lies; empty without lines: ball k is stroke k.
+  std::vector<std::uint32_t> balls;
+  std::vector<std::uint32_t> cylinders;  ///< the stroke that geometry k + 1 shows
 
   /// The place on its stroke, as a triangle of `strokes`, of a surface met at `place` in the strokes' space.
   MeshPoint at(const SurfaceInteraction& surface, const Vec3d& place) const;
 };
 
-/// Adds the geometries of all strokes to `out`, which is empty, for an object with the number `user`: balls
-/// of this radius, the first one, and if there are lines a cylinder for each.
+/// Adds the geometries of all strokes to `out`, which is empty: first one of all balls, of this radius, then
+/// a cylinder for each line that has a length. `user`: the number of the object.
 StrokeParts add_strokes(std::shared_ptr<const TriangleMesh> strokes, double radius, std::uint32_t user,
                         std::vector<Geometry>& out);
 

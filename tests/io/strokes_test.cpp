@@ -263,6 +263,20 @@ TEST(Strokes, ColorsOfEndsBlendAlongLines) {
   EXPECT_GT(count, 60u);
 }
 
+/// Then there are balls alone, behind other geometries.
+TEST(Strokes, LinesWithoutLengthAreBalls) {
+  const SceneFiles files;
+  files.dir.write("a.obj", "v 0 0 0 0 1 0\nv 0 0 0 0 1 0\nl 1 2\n");
+  const Picture picture = run(seen(files,
+                                   "  - sphere: {radius: 0.1, center: [0, 0, -20]}\n"
+                                   "  - mesh: {file: a.obj, stroke_width: 1.2}\n"
+                                   "    material: {color: {attribute: color}}\n",
+                                   "albedo"))
+                              .picture;
+  EXPECT_GT(pixels_shown(picture), 100u);
+  EXPECT_EQ(color(picture, 24, 24), (Color{0, 1, 0}));
+}
+
 /// The width is that of the file in the world, however a node stretches its places, and skins bend them.
 TEST(Strokes, NodesOfGltfFilesMoveThemWithoutStretchingThem) {
   const GltfFiles files;
