@@ -16,7 +16,6 @@ float dispersed_ior(float ior, float dispersion, int channel) {
 }
 
 Color disperse(ShadingPoint& p, const Color& carried, float u) {
-  if (!p.principled || !disperses(*p.principled)) return {1, 1, 1};
   const float sum = carried.x + carried.y + carried.z;
   if (!(sum > 0)) return {1, 1, 1};
   int chosen = 0;
@@ -27,8 +26,7 @@ Color disperse(ShadingPoint& p, const Color& carried, float u) {
     before += carried[k];
     if (u * sum < before) break;
   }
-  p.principled->ior = dispersed_ior(p.principled->ior, p.principled->dispersion, chosen);
-  p.ior = p.principled->ior;
+  set_index_of_refraction(p, dispersed_ior(p.principled->ior, p.principled->dispersion, chosen));
   Color factor{0, 0, 0};
   factor[chosen] = sum / carried[chosen];
   return factor;

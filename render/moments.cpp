@@ -83,9 +83,8 @@ Moments::Moments(const Scene& scene, World& world, const BuildOptions& build) : 
   if (things_move_ && wants_photons(scene.integrator))
     count = std::min(count, std::max(scene.integrator.caustics.passes, 1u));
   if (world.bent_triangles > 0)
-    count = std::min(
-        count, std::max(kLeastBentMoments, static_cast<std::uint32_t>(std::min<std::uint64_t>(
-                                               kMostBentTriangles / world.bent_triangles, kMostMoments))));
+    count = static_cast<std::uint32_t>(std::min<std::uint64_t>(
+        count, std::max<std::uint64_t>(kLeastBentMoments, kMostBentTriangles / world.bent_triangles)));
   const std::uint64_t key = pixel_key(scene.integrator.seed, ~std::uint64_t{0} - 1);
   for (std::uint32_t m = 0; m < count; ++m) {
     const double begin = first_sample_of_moment(m, count, samples),

@@ -62,7 +62,7 @@ class ObjectBoxes {
     add_box(*own, map, box);
   }
   void add_shape(const ExactShape& shape, const Affine& map, WideBox& box) const {
-    if (!is_unbounded(shape, {})) add_box(exact_bounds(shape, {}), map, box);
+    add_box(exact_bounds(shape, {}), map, box);
   }
   template <class S>
   void add_shape(const S& shape, const Affine& map, WideBox& box) const {
@@ -76,9 +76,9 @@ class ObjectBoxes {
 
 using Prototypes = std::vector<Prototype>;
 
-WideBox box_of(const Object& object, const Prototypes& prototypes) {
+WideBox box_of(const Object& object, ObjectBoxes& boxes) {
   WideBox box;
-  ObjectBoxes(prototypes, false).add(object, {}, box);
+  boxes.add(object, {}, box);
   return box;
 }
 
@@ -128,7 +128,7 @@ class Recentring {
   std::optional<Vec3d> move(std::vector<Object>& objects) {
     std::optional<Vec3d> place;
     for (Object& object : objects)
-      if (holds_far_mesh(object) && !place && is_far(box_of(object, prototypes_)))
+      if (holds_far_mesh(object) && !place && is_far(box_of(object, boxes_)))
         place = object.transform.point({0, 0, 0});
     if (place) move(objects, *place);
     return place;
@@ -159,6 +159,8 @@ class Recentring {
   }
 
   Prototypes& prototypes_;
+  // A prototype shows only earlier ones, which have been moved when their boxes are asked for.
+  ObjectBoxes boxes_{prototypes_, false};
   std::vector<std::optional<Vec3d>> places_;
 };
 
@@ -199,15 +201,14 @@ void recentre(Scene& scene) {
 std::vector<Warning> find_lost_digits(const Scene& scene) {
   // Bits of a float, without those that are to be left of an extent.
   constexpr double kMost = 0x1p17;
-  ObjectBoxes some(scene.prototypes, true);
+  ObjectBoxes some(scene.prototypes, true), whole(scene.prototypes, false);
   std::size_t count = 0;
   const Object* first = nullptr;
   WideBox first_box;
   for (const Object& object : scene.objects) {
-    WideBox part;
-    some.add(object, {}, part);
+    const WideBox part = box_of(object, some);
     if (part.distance() <= part.extent() * kMost) continue;
-    const WideBox all = box_of(object, scene.prototypes);
+    const WideBox all = box_of(object, whole);
     if (all.distance() <= all.extent() * kMost || all.extent() == 0) continue;
     if (count++ == 0) first = &object, first_box = all;
   }

@@ -510,7 +510,8 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
                            const RayHistory& history, const SurfaceInteraction& found) {
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
-  const bool textured_here = has_textures(*p.material) || is_stretched(*p.material);
+  const bool by_path = traits(context.settings.kind).traces_paths;
+  const bool textured_here = has_textures(*p.material) || (by_path && is_stretched(*p.material));
   p.surface = textured_here ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
@@ -525,7 +526,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
     pixel_vectors(context, ray, hit, s, history, x, y);
     textures.set_footprints(x, y);
     ns = textures.shading_normal();
-    frame = {textures.coat_normal(), textures.stretch()};
+    if (by_path) frame = {textures.coat_normal(), textures.stretch()};
     place = textures.place;
   }
   p.color = color_at(context, m, place);
@@ -534,8 +535,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.values = phong_values(context, m, place);
   p.opacity = opacity_at(context, m, place);
   p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
-  const bool resembles = textured_here || traits(context.settings.kind).traces_paths;
-  if (resembles && shows_principled(context, m)) set_principled(context, place, p);
+  if ((textured_here || by_path) && shows_principled(context, m)) set_principled(context, place, p);
   p.normal = ns;
   face_ray(p, ns);
   if (p.principled && (frame.coat_normal || frame.stretch)) set_frame(p, frame, *p.principled);
@@ -628,7 +628,13 @@ FaceSplit split_at(const StraightFace& face, PrincipledParameters p, bool front)
   const PrincipledSurface surface(p, front);
   const Vec3<D> passed = PrincipledLobes<D>(surface, broadcast<FloatsOf<D>>(viewer)).passing_glass();
   // A thin wall has no inside.
-  return {only_lane(passed), p.thin ? 0 : surface.glass * fresnel(face.before, face.ior)};
+  if (p.thin) return {only_lane(passed), 0};
+  double reflectance = fresnel(face.before, face.ior);
+  if (const GlassSurface& glass = surface; glass.film_weight > 0) {
+    const Vec3d film = glass.film.reflectance(face.before);
+    reflectance += glass.film_weight * ((film.x + film.y + film.z) / 3 - reflectance);
+  }
+  return {only_lane(passed), surface.glass * reflectance};
 }
 
 }  // namespace

@@ -74,7 +74,12 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
 
 /// The index of refraction of the material at a point; 1 without a surface.
 float index_of_refraction(const ShadingPoint& p);
-/// The same at a hit with the surface interaction `s`, of which only the names are used.
+/// Gives the material at a point this index of refraction.
+inline void set_index_of_refraction(ShadingPoint& p, float ior) {
+  p.ior = ior;
+  if (p.principled) p.principled->ior = ior;
+}
+/// index_of_refraction at a hit with the surface interaction `s`, of which only the names are used.
 float index_of_refraction(const RenderContext& context, const Ray& ray, const Hit& hit,
                           const SurfaceInteraction& s);
 

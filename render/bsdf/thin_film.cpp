@@ -92,7 +92,10 @@ struct Passing {
 }  // namespace
 
 ThinFilm::ThinFilm(double ior, double thickness, const Vec3d& eta, const Vec3d& k)
-    : ior_(ior), thickness_(thickness / 1000), eta_(eta), k_(k) {}
+    : ior_(ior), thickness_(thickness / 1000), eta_(eta), k_(k) {
+  const auto is_even = [](const Vec3d& v) { return v.x == v.y && v.y == v.z; };
+  indices_ = is_even(eta) && is_even(k) ? 1 : 3;
+}
 
 Vec3d ThinFilm::reflectance(double cosine) const {
   static const ChannelWeights weights = channel_weights();
@@ -102,7 +105,7 @@ Vec3d ThinFilm::reflectance(double cosine) const {
   if (within == 0) return {1, 1, 1};
   const double s = (c - within) / (c + within), p = (film2 * c - within) / (film2 * c + within);
   Passing passing[3][2];
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < indices_; ++k) {
     const Complex square{eta_[k] * eta_[k] - k_[k] * k_[k], 2 * eta_[k] * k_[k]};
     const Complex below = root(square - Complex{sine2, 0}), here{within, 0};
     passing[k][0] = {s, (here - below) / (here + below)};
@@ -111,16 +114,18 @@ Vec3d ThinFilm::reflectance(double cosine) const {
   const double way = 2 * within * thickness_;
   Vec3d passed;
   if (way >= kIncoherent) {
-    for (int k = 0; k < 3; ++k) passed[k] = (passing[k][0].mean + passing[k][1].mean) / 2;
+    for (int k = 0; k < 3; ++k)
+      passed[k] = (passing[k % indices_][0].mean + passing[k % indices_][1].mean) / 2;
   } else {
     constexpr double kTurn = 2 * std::numbers::pi;
     // From each wave to the next the phase grows by the same.
     const Complex step{portable::cos(kTurn * way * kWaveStep), portable::sin(kTurn * way * kWaveStep)};
     Complex phase{portable::cos(kTurn * way * kFirstWave), portable::sin(kTurn * way * kFirstWave)};
     for (const Vec3d& weight : weights) {
-      for (int k = 0; k < 3; ++k)
-        passed[k] +=
-            weight[k] * (passing[k][0].at(phase.re, phase.im) + passing[k][1].at(phase.re, phase.im)) / 2;
+      double part[3];
+      for (int k = 0; k < indices_; ++k)
+        part[k] = passing[k][0].at(phase.re, phase.im) + passing[k][1].at(phase.re, phase.im);
+      for (int k = 0; k < 3; ++k) passed[k] += weight[k] * part[k % indices_] / 2;
       phase = phase * step;
     }
   }

@@ -33,6 +33,7 @@ class ThinFilm {
  private:
   double ior_ = 1, thickness_ = 0;  ///< micrometres
   Vec3d eta_{1, 1, 1}, k_{0, 0, 0};
+  int indices_ = 1;  ///< 1: all channels have the same index of refraction below; else 3
 };
 
 /// The index of refraction of a dielectric that reflects the part `head_on` of light that meets it head-on

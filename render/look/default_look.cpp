@@ -285,10 +285,14 @@ TriangleMesh corners_of(const Scene& scene) {
   };
   for (const Object& object : scene.objects) {
     const auto& shape = std::get<MeshShape>(object.shape);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    for (const Vec3f& p : shape.mesh->positions) all.positions.push_back(p);
+    for (const std::uint32_t i : shape.mesh->indices) all.indices.push_back(first + i);
+    const auto reach = static_cast<float>(shape.stroke_width / 2);
+    if (!(reach > 0)) continue;
     std::array<std::array<Vec3f, 2>, 3> ends{};
     bool is_first = true;
     each_corner(*shape.mesh, [&](const Vec3f& p) {
-      add(p);
       for (int axis = 0; axis < 3; ++axis) {
         auto& [low, high] = ends[static_cast<std::size_t>(axis)];
         if (is_first || p[axis] < low[axis]) low = p;
@@ -296,8 +300,6 @@ TriangleMesh corners_of(const Scene& scene) {
       }
       is_first = false;
     });
-    const auto reach = static_cast<float>(shape.stroke_width / 2);
-    if (!(reach > 0)) continue;
     for (int axis = 0; axis < 3; ++axis) {
       auto [low, high] = ends[static_cast<std::size_t>(axis)];
       low[axis] -= reach, high[axis] += reach;

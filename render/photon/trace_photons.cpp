@@ -262,7 +262,7 @@ class PhotonChunk {
 
   /// Solids count as in shade_path.
   void arrive(std::size_t i, ShadingPoint p) {
-    if (p.principled && disperses(*p.principled)) {
+    if (disperses(p)) {
       const float u = choices_.channel(queue_.number[i], level_);
       energy_.absorbed += attenuate(i, disperse(p, queue_.power[i], u));
     }
@@ -273,10 +273,7 @@ class PhotonChunk {
     if (boundary.hidden)
       return push(i, p, p.direction, queue_.power[i], queue_.index_square[i], queue_.bounces[i],
                   &boundary.behind);
-    if (boundary.ior) {
-      p.ior = *boundary.ior;
-      if (p.principled) p.principled->ior = *boundary.ior;
-    }
+    if (boundary.ior) set_index_of_refraction(p, *boundary.ior);
     meet(i, p, &before, &boundary.behind);
   }
 

@@ -222,7 +222,7 @@ bool meet_alone(const RenderContext& context, Wavefront& wavefront, const RayHis
   const std::size_t k = hit.entry, ray = c.ray[k];
   hit.point = shading_point(context, wavefront.rays.rays[ray], wavefront.hits[ray], history, found);
   ShadingPoint& p = hit.point;
-  if (p.principled && disperses(*p.principled)) {
+  if (disperses(p)) {
     const std::uint64_t key = sequence_key(c.key[k], dispersion_dimension(wavefront.level));
     const Color before = wavefront.rays.throughput[ray];
     const Color left = before * disperse(p, before, sobol_number(c.number[k], key));
@@ -233,10 +233,7 @@ bool meet_alone(const RenderContext& context, Wavefront& wavefront, const RayHis
     hit.boundary = boundary_at(*context.world, wavefront.paths.dielectrics[ray], p.surface, p.front,
                                index_of_refraction(p));
     if (hit.boundary.hidden) return false;
-    if (hit.boundary.ior) {
-      p.ior = *hit.boundary.ior;
-      if (p.principled) p.principled->ior = *hit.boundary.ior;
-    }
+    if (hit.boundary.ior) set_index_of_refraction(p, *hit.boundary.ior);
   }
   if (p.opacity < 1) {
     const std::uint64_t key = sequence_key(c.key[k], dimension(Decision::hole, wavefront.level));

@@ -125,6 +125,24 @@ TEST(GlassShadow, APaneTakesFromPointsSpotsAndParallelLightWhatFresnelsEquations
         }
 }
 
+/// Of films that are so thick that no channel has a fixed phase: the parts that both interfaces reflect add
+/// up.
+TEST(GlassShadow, APaneWithThickFilmsTakesWhatTheirInterfacesReflect) {
+  Material m = principled_glass(1.5f, false);
+  PrincipledParameters& p = m.principled->parameters;
+  p.iridescence_ior = 2, p.iridescence_thickness = 20000;
+  const auto head_on = [](double n) { return (n - 1) * (n - 1) / ((n + 1) * (n + 1)); };
+  const double above = head_on(2), below = head_on(1.5 / 2), bare = head_on(1.5);
+  const double film = (above + below - 2 * above * below) / (1 - above * below);
+  for (const float weight : {0.0f, 0.5f, 1.0f}) {
+    p.iridescence = weight;
+    const double r = bare + static_cast<double>(weight) * (film - bare);
+    Scene scene = floor_scene(IntegratorKind::path);
+    scene.lights = {DirectionalLight{{0, -1, 0}, {1, 1, 1}}};
+    EXPECT_NEAR(part(scene, Pane::box, m), (1 - r) / (1 + r), 2e-5) << weight;
+  }
+}
+
 // In Whitted's model all points of glowing surfaces are asked straight, in path tracing their light is bent.
 TEST(GlassShadow, APaneTakesFromGlowingSurfacesWhatFresnelsEquationsSay) {
   for (const float ior : {1.5f, 2.4f}) {

@@ -99,9 +99,7 @@ class GlassLobe {
 
   /// The part of light that smooth glass lets pass, colour left out.
   OKTETT_INLINE Vec3<D> passing(const Surface& s, const LobeView<D>& v) const {
-    const Vec3<D> f = fresnel_of(s, *v.base, v.wo.z).color;
-    const D one(1.0);
-    return {weight_ * (one - f.x), weight_ * (one - f.y), weight_ * (one - f.z)};
+    return left_by(fresnel_of(s, *v.base, v.wo.z));
   }
 
   /// Light that facets let pass.
@@ -123,6 +121,11 @@ class GlassLobe {
   }
 
  private:
+  /// What is not reflected.
+  OKTETT_INLINE Vec3<D> left_by(const GlassFresnel<D>& f) const {
+    const D one(1.0);
+    return {weight_ * (one - f.color.x), weight_ * (one - f.color.y), weight_ * (one - f.color.z)};
+  }
   /// Of a thin wall: with all reflections inside it.
   static OKTETT_INLINE GlassFresnel<D> fresnel_of(const Surface& s, const PrincipledBase& b,
                                                   const D& cosine) {
@@ -154,7 +157,7 @@ class GlassLobe {
     const auto part = [&](const D& r) { return select(seen, weight_ * (one - r) * shown, zero); };
     const Vec3<D> color = broadcast<D>(b.base_color);
     if (s.film_weight == 0) return color * part(f.mean);
-    return {color.x * part(f.color.x), color.y * part(f.color.y), color.z * part(f.color.z)};
+    return color * Vec3<D>{part(f.color.x), part(f.color.y), part(f.color.z)};
   }
   /// Of a sample of glass.
   static OKTETT_INLINE D chance_of_reflection(const PrincipledBase& b, const D& reflectance) {
@@ -176,8 +179,7 @@ class GlassLobe {
       wi.y = wi.y * ratio;
       wi.z = -sqrt(max(D(0.0), one - (wi.x * wi.x + wi.y * wi.y)));
     }
-    const Vec3<D> color = broadcast<D>(v.base->base_color), left = passing(s, v);
-    out.deflect(here & ~reflects, wi, {color.x * left.x, color.y * left.y, color.z * left.z},
+    out.deflect(here & ~reflects, wi, broadcast<D>(v.base->base_color) * left_by(reflectance),
                 chosen * (one - chance));
   }
 
