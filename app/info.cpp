@@ -60,8 +60,7 @@ struct ShapeBounds {
   const std::vector<Box>& prototypes;
 
   Box operator()(const MeshShape& shape) const {
-    Box box;
-    if (shape.mesh) each_corner(*shape.mesh, [&](const Vec3f& p) { box.grow(p); });
+    Box box = shape.mesh ? corner_box(*shape.mesh) : Box{};
     const auto r = static_cast<float>(shape.stroke_width / 2);
     if (!box.empty() && r > 0) box.grow(box.lo - Vec3f{r, r, r}), box.grow(box.hi + Vec3f{r, r, r});
     return box;

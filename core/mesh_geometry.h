@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/box.h"
 #include "core/mesh.h"
 
 namespace oktett {
@@ -16,6 +17,13 @@ inline Vec3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t 
 template <class F>
 void each_corner(const TriangleMesh& mesh, F&& f) {
   for (const std::uint32_t i : mesh.indices) f(mesh.positions[i]);
+}
+
+/// The box of the corners of all triangles.
+inline Box corner_box(const TriangleMesh& mesh) {
+  Box box;
+  each_corner(mesh, [&](const Vec3f& p) { box.grow(p); });
+  return box;
 }
 
 /// The normal of a triangle, twice as long as its area; it points to the front.

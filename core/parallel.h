@@ -26,6 +26,14 @@ void in_parts(std::size_t size, std::size_t part, F&& f) {
                     [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); });
 }
 
+/// Calls f(i) for all i below `count`, many of them at the same time: for short work on large arrays.
+template <class F>
+void for_all(std::size_t count, F&& f) {
+  in_parts(count, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) f(i);
+  });
+}
+
 /// A column of `size` elements that equal `value`. All threads write it: the system clears the pages of new
 /// memory when they are first written, which takes longer than the writing.
 template <class T>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <string>
@@ -11,14 +12,12 @@
 #include <vector>
 
 #include "core/math.h"
-#include "core/mesh_geometry.h"
 #include "core/phase.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/gltf_file.h"
 #include "io/gltf/mesh_builder.h"
 #include "io/gltf/pose.h"
 #include "io/mesh/reading.h"
-#include "io/mesh/strokes.h"
 #include "io/text/files.h"
 
 namespace oktett {
@@ -27,18 +26,8 @@ namespace {
 constexpr std::size_t kMostWarnings = 100;
 /// Keys of what moves while the shutter is open.
 constexpr int kPoses = 9;
-/// Beyond it, transforms are of no use to coordinates in float.
-constexpr double kMostEntry = 1e15;
 
 double degrees(double radians) { return radians * (180 / std::numbers::pi); }
-
-/// What no point of a place can be beyond, and what can be undone.
-bool is_usable(const Affine& map) {
-  for (const auto& row : map.m)
-    for (const double x : row)
-      if (!(std::abs(x) <= kMostEntry)) return false;
-  return map.is_invertible();
-}
 
 /// How light fades from the inner to the outer angle: as the square of what is linear in the cosine
 /// (KHR_lights_punctual).
@@ -114,13 +103,13 @@ class SceneReader {
     if (node.mesh == kNoId && node.camera == kNoId && node.light == kNoId) return;
     const Affine& to_world = pose().to_world[number];
     const bool is_skinned = node.mesh != kNoId && node.skin != kNoId && has_joints(node.mesh);
-    if (!is_usable(to_world) && !is_skinned) {
+    if (!is_usable_place(to_world) && !is_skinned) {
       warn("nodes[" + std::to_string(number) +
            "]: its transform is singular or out of range; what it shows is skipped");
       return;
     }
     if (node.mesh != kNoId) show_mesh(node, number, is_skinned);
-    if (!is_usable(to_world)) return;
+    if (!is_usable_place(to_world)) return;
     if (node.camera != kNoId && !scene_.camera) set_camera(node.camera, number);
     if (node.light != kNoId) add_light(file_.model().lights[node.light], to_world);
   }
@@ -169,13 +158,13 @@ class SceneReader {
     return choices;
   }
 
-  /// Shows a mesh at the instances of a node: that of the scene with the number `shared`, or copies of
-  /// `strokes` in the world.
+  /// Shows a mesh at each instance of a node: as mesh `shared` of the scene or, if that is kNoId, as copies
+  /// of `strokes` moved to the world.
   void place(const std::string& name, std::uint32_t node, const std::vector<Affine>& instances,
              const SharedMesh& strokes, std::uint32_t shared) {
     for (const Affine& instance : instances) {
       const Affine to_world = pose().to_world[node] * instance;
-      if (!is_usable(to_world))
+      if (!is_usable_place(to_world))
         warn("nodes[" + std::to_string(node) + "]: an instance is singular or out of range and is skipped");
       else if (shared != kNoId)
         scene_.placements.push_back({name, shared, to_world, motion_of(node, instance)});
@@ -218,24 +207,26 @@ class SceneReader {
   /// A mesh as it is bent at all poses, the first of which it shows.
   SharedMesh bent(std::uint32_t number, const GltfChoice& choice, const std::vector<GltfBending>& bendings) {
     SharedMesh mesh = build(number, choice, bendings.data());
-    if (mesh.mesh == nullptr) return mesh;
+    const bool moves = std::ranges::adjacent_find(bendings, std::not_equal_to{}) != bendings.end();
+    if (mesh.mesh == nullptr || !moves) return mesh;
     MeshBending all;
-    bool moves = false;
     for (std::size_t i = 0; i < bendings.size(); ++i) {
       MeshPose& at = all.poses.emplace_back();
       at.time = times_[i];
-      if (i > 0 && bendings[i] == bendings[i - 1]) {
+      if (i == 0) {
+        at.positions = mesh.mesh->positions, at.normals = mesh.mesh->normals;
+        at.tangents = mesh.mesh->tangents;
+      } else if (bendings[i] == bendings[i - 1]) {
         at.positions = all.poses[i - 1].positions, at.normals = all.poses[i - 1].normals;
         at.tangents = all.poses[i - 1].tangents;
-        continue;
+      } else {
+        std::vector<std::string> told;
+        TriangleMesh now = builder_.build(number, choice, &bendings[i], told).mesh;
+        at.positions = std::move(now.positions), at.normals = std::move(now.normals);
+        at.tangents = std::move(now.tangents);
       }
-      moves = moves || i > 0;
-      std::vector<std::string> told;
-      TriangleMesh now = i == 0 ? *mesh.mesh : builder_.build(number, choice, &bendings[i], told).mesh;
-      at.positions = std::move(now.positions), at.normals = std::move(now.normals);
-      at.tangents = std::move(now.tangents);
     }
-    if (moves) mesh.bending = std::make_shared<const MeshBending>(std::move(all));
+    mesh.bending = std::make_shared<const MeshBending>(std::move(all));
     return mesh;
   }
 
@@ -299,7 +290,7 @@ class SceneReader {
       keys.push_back({times_[i], poses_[i].to_world[number] * inner});
     const bool mirrored = keys[0].transform.determinant() < 0;
     for (const MotionKey& key : keys)
-      if (!is_usable(key.transform) || (key.transform.determinant() < 0) != mirrored) return nullptr;
+      if (!is_usable_place(key.transform) || (key.transform.determinant() < 0) != mirrored) return nullptr;
     return std::make_shared<const Motion>(std::move(motion));
   }
 
@@ -367,25 +358,6 @@ class SceneReader {
 
 FileScene load_gltf_scene(const std::string& path, const GltfOptions& options) {
   return SceneReader(path, options).run();
-}
-
-double usual_stroke_width(FileScene& scene, const std::string& path) {
-  StrokeCount count;
-  for (const SharedMesh& shared : scene.meshes)
-    if (shared.is_strokes) count.add(*shared.mesh);
-  if (count.all() == 0) return 0;
-  Box box;
-  std::map<std::uint32_t, Box> boxes;
-  for (const PlacedMesh& placement : scene.placements) {
-    const auto [found, is_new] = boxes.try_emplace(placement.mesh);
-    if (is_new)
-      each_corner(*scene.meshes[placement.mesh].mesh, [&](const Vec3f& p) { found->second.grow(p); });
-    box.grow(placement.to_world.is_identity() ? found->second
-                                              : transform_bounds(placement.to_world, found->second));
-  }
-  const double width = usual_stroke_width(box, count.all());
-  scene.warnings.push_back({Location{path}, count.width_message(width)});
-  return width;
 }
 
 bool is_gltf_file(const std::string& path) {

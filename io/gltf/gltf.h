@@ -15,10 +15,6 @@ namespace oktett {
 /// read.
 FileScene load_gltf_scene(const std::string& path, const GltfOptions& options = {});
 
-/// How wide points and lines are shown if nothing is said; 0 if there are none. Adds to the warnings how wide
-/// that is.
-double usual_stroke_width(FileScene& scene, const std::string& path);
-
 /// Whether the name of a file is that of a glTF file.
 bool is_gltf_file(const std::string& path);
 

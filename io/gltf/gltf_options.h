@@ -13,7 +13,7 @@ struct GltfOptions {
   /// Seconds for which things move from then on.
   double shutter = 0;
   std::string variant;      ///< of KHR_materials_variants; empty: none
-  double stroke_width = 0;  ///< of points and lines, also of other meshes; 0: by their surroundings
+  double stroke_width = 0;  ///< of points and lines, also of other meshes; 0: by the size of what is shown
 
   /// Whether something is asked that only glTF files have.
   bool is_for_gltf() const { return time || shutter != 0 || !variant.empty(); }

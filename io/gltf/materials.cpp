@@ -180,7 +180,7 @@ class Materials {
     out.anisotropy_direction_texture = add(in.anisotropy_texture);
   }
 
-  /// The image takes the thickness from the least to the greatest; without it is the greatest.
+  /// The image leads from the least thickness to the greatest; without it the greatest counts.
   void set_iridescence(const GltfMaterial& in, PrincipledMaterial& out) {
     if (in.iridescence == 0) return;
     PrincipledParameters& p = out.parameters;
@@ -197,7 +197,8 @@ class Materials {
             in.least_thickness / p.iridescence_thickness);
   }
 
-  /// KHR_materials_specular. What an index out of range reflects head-on is left to the colour.
+  /// KHR_materials_specular. An index of refraction out of range is clamped; the colour makes up for what it
+  /// would reflect head-on.
   void set_specular(const GltfMaterial& in, PrincipledMaterial& out) {
     PrincipledParameters& p = out.parameters;
     const auto head_on = [](float ior) { return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1)); };
@@ -215,7 +216,8 @@ class Materials {
     if (in.transmission > 0 &&
         (in.specular != 1 || !(in.specular_color == Color{1, 1, 1}) || in.specular_texture.texture != kNoId ||
          in.specular_color_texture.texture != kNoId))
-      warn(in, "what its glass reflects is what its index of refraction says alone");
+      warn(in,
+           "its glass reflects as its index of refraction says; KHR_materials_specular does not change that");
   }
 
   /// Adds the texture, whose number is gain * texel + base, and returns its index; kNoId for none.

@@ -503,7 +503,7 @@ class GltfConversion {
       return warn(where + ": animates what is not read");
     channel.path = static_cast<GltfChannel::Path>(path - std::begin(kPaths));
     channel.node = index(target, "node", out_.nodes.size(), where, "node");
-    // Of what the parts of a matrix are, opinions differ.
+    // glTF forbids to animate a node that has a matrix, and programs split such a matrix differently.
     if (channel.path != GltfChannel::Path::weights && out_.nodes[channel.node].has_matrix)
       return warn(where + ": " + gltf_place("nodes", channel.node) + " has a matrix; it is not animated");
     constexpr std::string_view kCurves[] = {"LINEAR", "STEP", "CUBICSPLINE"};

@@ -107,7 +107,7 @@ struct GltfAttributes {
 };
 
 struct GltfPrimitive {
-  static constexpr int kPoints = 0, kLines = 1, kLineLoop = 2, kLineStrip = 3;
+  static constexpr int kPoints = 0, kLines = 1, kLineLoop = 2;  // 3: a strip of lines
   static constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
 
   int mode = kTriangles;  ///< [0, 6]; 7: of none of these

@@ -37,8 +37,8 @@ struct DracoMesh {
 };
 
 /// Unpacks the attributes that `wanted` gives by their numbers in the data, kNoId: not wanted, and of
-/// `others` what is carried, joints and weights. Whole numbers of what is
-/// `normalized` are parts of the greatest one. Throws Error, which begins with `where`, for damaged data.
+/// `others` what is carried, joints and weights. Whole numbers of what is `normalized` are parts of the
+/// greatest one. Throws Error, which begins with `where`, for damaged data.
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                        const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
                        const std::array<bool, kDracoSizes.size()>& normalized, const GltfAttributes& others,

@@ -46,6 +46,13 @@ struct FileScene {
   std::vector<Warning> warnings;
 };
 
+/// Whether points of a place stay within what coordinates in float can be, and the place can be undone.
+bool is_usable_place(const Affine& map);
+
+/// How wide points and lines are shown if nothing is said; 0 if there are none. Adds to the warnings how wide
+/// that is.
+double usual_stroke_width(FileScene& scene, const std::string& path);
+
 /// Whether all placements together, each with triangles of its own, take little more than the meshes once: at
 /// most four million triangles.
 bool can_be_one_mesh(const FileScene& scene);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,10 +10,12 @@
 
 #include "core/error.h"
 #include "core/far_mesh.h"
+#include "core/mesh_geometry.h"
+#include "core/parallel.h"
 #include "io/mesh/file_scene.h"
-#include "io/mesh/for_all.h"
 #include "io/mesh/reading.h"
 #include "io/mesh/rounding.h"
+#include "io/mesh/strokes.h"
 
 namespace oktett {
 namespace {
@@ -146,8 +149,9 @@ class Joining {
     if (sizes.uvs > 0) mesh_.uv_indices.resize_uninitialized(sizes.corners);
   }
 
-  /// Adds to `warnings`.
-  TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots, std::vector<Warning>& warnings) {
+  /// `origin`: from where positions count; null: as they are best kept. Adds to `warnings`.
+  TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots, const Vec3d* origin,
+                   std::vector<Warning>& warnings) {
     if (!slots.empty()) mesh_.material_slots.resize_uninitialized(mesh_.triangle_count());
     for (const PlacedMesh& placement : scene_.placements) {
       const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
@@ -163,10 +167,9 @@ class Joining {
       before_.add(part);
     }
     move_positions({});
-    if (const std::optional<Vec3d> centre = far_centre(mesh_.positions, false)) {
-      mesh_.origin = *centre;
-      move_positions(*centre);
-    }
+    check_positions();
+    mesh_.origin = origin != nullptr ? *origin : far_centre(mesh_.positions, false).value_or(Vec3d{});
+    if (!(mesh_.origin == Vec3d{})) move_positions(mesh_.origin);
     std::string words = find_rounding(mesh_, [this](const Vec3d& centre) { move_positions(centre); });
     if (!words.empty()) warnings.push_back({Location{path_}, std::move(words)});
     return std::move(mesh_);
@@ -182,11 +185,20 @@ class Joining {
       const bool stays = map.is_identity() && centre == Vec3d{};
       for_all(own.size(),
               [&](std::size_t i) { out[i] = stays ? own[i] : Vec3f(map.point(Vec3d(own[i])) - centre); });
-      for (std::size_t i = 0; i < own.size(); ++i)
-        for (const float x : {out[i].x, out[i].y, out[i].z})
+      out += own.size();
+    }
+  }
+
+  /// Places may have moved them out of range.
+  void check_positions() const {
+    const Vec3f* at = mesh_.positions.data();
+    for (const PlacedMesh& placement : scene_.placements) {
+      const std::size_t count = scene_.meshes[placement.mesh].mesh->positions.size();
+      for (std::size_t i = 0; i < count && !placement.to_world.is_identity(); ++i)
+        for (const float x : {at[i].x, at[i].y, at[i].z})
           if (!is_coordinate(x))
             throw Error(Location{path_}, "object '" + placement.name + "': " + bad_coordinate(x));
-      out += own.size();
+      at += count;
     }
   }
 
@@ -245,13 +257,12 @@ class Slots {
     }
     // A mesh without materials is one without materials in every format.
     if (materials.size() == 1 && slot_of_.back() == 0) materials.clear();
+    if (materials.size() <= 1) own_.clear();
   }
 
   std::vector<Material> materials;
   /// Per mesh of the scene and slot of it; empty if all are in slot 0.
-  std::vector<std::vector<std::uint16_t>> numbers() const {
-    return materials.size() > 1 ? own_ : std::vector<std::vector<std::uint16_t>>{};
-  }
+  const std::vector<std::vector<std::uint16_t>>& numbers() const { return own_; }
 
  private:
   std::uint16_t slot(std::uint32_t material) {
@@ -271,8 +282,10 @@ class Slots {
 
 }  // namespace
 
-/// All that the placements of a scene show.
-static TriangleMesh joined(const std::string& path, FileScene& scene, const Slots& slots) {
+/// All that the placements of a scene show. `origin`: from where positions count; null: as they are best
+/// kept.
+static TriangleMesh joined(const std::string& path, FileScene& scene, const Slots& slots,
+                           const Vec3d* origin) {
   const bool is_whole =
       scene.placements.size() == 1 && scene.meshes.size() == 1 && scene.placements[0].to_world.is_identity();
   if (is_whole) {
@@ -281,9 +294,36 @@ static TriangleMesh joined(const std::string& path, FileScene& scene, const Slot
     return mesh;
   }
   if (scene.placements.empty()) return {};
-  TriangleMesh mesh = Joining(path, scene).run(slots.numbers(), scene.warnings);
+  TriangleMesh mesh = Joining(path, scene).run(slots.numbers(), origin, scene.warnings);
   mesh.attributes = AttributeJoining(scene, mesh).run(path, scene.warnings);
   return mesh;
+}
+
+bool is_usable_place(const Affine& map) {
+  // Beyond it, transforms are of no use to coordinates in float.
+  constexpr double kMostEntry = 1e15;
+  for (const auto& row : map.m)
+    for (const double x : row)
+      if (!(std::abs(x) <= kMostEntry)) return false;
+  return map.is_invertible();
+}
+
+double usual_stroke_width(FileScene& scene, const std::string& path) {
+  StrokeCount count;
+  for (const SharedMesh& shared : scene.meshes)
+    if (shared.is_strokes) count.add(*shared.mesh);
+  if (count.all() == 0) return 0;
+  Box box;
+  std::map<std::uint32_t, Box> boxes;
+  for (const PlacedMesh& placement : scene.placements) {
+    const auto [found, is_new] = boxes.try_emplace(placement.mesh);
+    if (is_new) found->second = corner_box(*scene.meshes[placement.mesh].mesh);
+    box.grow(placement.to_world.is_identity() ? found->second
+                                              : transform_bounds(placement.to_world, found->second));
+  }
+  const double width = usual_stroke_width(box, count.all());
+  scene.warnings.push_back({Location{path}, count.width_message(width)});
+  return width;
 }
 
 bool can_be_one_mesh(const FileScene& scene) {
@@ -303,7 +343,9 @@ MeshFile one_mesh(const std::string& path, FileScene scene) {
     scene.placements.clear();
     std::ranges::copy_if(all, std::back_inserter(scene.placements),
                          [&](const PlacedMesh& p) { return scene.meshes[p.mesh].is_strokes == strokes; });
-    (strokes ? file.strokes : file.mesh) = joined(path, scene, slots);
+    // Strokes count from where triangles do.
+    const bool follows = strokes && file.mesh.triangle_count() > 0;
+    (strokes ? file.strokes : file.mesh) = joined(path, scene, slots, follows ? &file.mesh.origin : nullptr);
   }
   const bool has_materials = std::ranges::any_of(scene.meshes, [](const SharedMesh& m) {
     return std::ranges::any_of(m.slots, [](auto s) { return s != kNoId; });

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/mesh_geometry.h"
+
 namespace oktett {
 namespace {
 
@@ -20,9 +22,8 @@ constexpr double kLeastMove = 1.0 / 64;
 using TriangleEdges = std::array<Vec3d, 3>;
 
 TriangleEdges edges_of(const TriangleMesh& mesh, std::size_t triangle) {
-  Vec3d corner[3];
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = Vec3d(mesh.positions[mesh.indices[3 * triangle + k]]);
-  return {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+  const Vec3d a = corner(mesh, triangle, 0), b = corner(mesh, triangle, 1), c = corner(mesh, triangle, 2);
+  return {b - a, c - b, a - c};
 }
 
 double longest_edge(const TriangleEdges& edges) {
@@ -33,7 +34,7 @@ double longest_edge(const TriangleEdges& edges) {
 
 /// What rounding to floats may move a corner of the triangle by.
 double rounding_of(const TriangleMesh& mesh, std::size_t triangle) {
-  return max_component(abs(Vec3d(mesh.positions[mesh.indices[3 * triangle]]))) * 0x1p-24;
+  return max_component(abs(corner(mesh, triangle, 0))) * 0x1p-24;
 }
 
 }  // namespace
@@ -65,9 +66,13 @@ std::string find_rounding(TriangleMesh& mesh, const std::function<void(const Vec
   if (moved * kMany < compared) return {};
   return fmt::format(
       "parts of the mesh lie so far apart that floats round positions by up to {:.2g}, which changes the "
-      "shape of "
-      "triangles; files of their own keep the digits of each part",
+      "shape of triangles; files of their own keep the digits of each part",
       rounding);
+}
+
+void note_rounding(ParsedMesh& parsed, const std::function<void(const Vec3d&)>& read_from) {
+  std::string words = find_rounding(parsed.mesh, read_from);
+  if (!words.empty()) parsed.notices.push_back({0, std::move(words), {}});
 }
 
 }  // namespace oktett

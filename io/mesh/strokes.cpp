@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/mesh_geometry.h"
-#include "io/mesh/for_all.h"
+#include "core/parallel.h"
 #include "io/mesh/mesh_output.h"
 
 namespace oktett {
@@ -34,23 +34,23 @@ MeshAttribute picked(const MeshAttribute& a, const Column<std::uint32_t>& used) 
   return own;
 }
 
-/// The vertices of `mesh` that are used, in their order, with what they carry.
-TriangleMesh with_used_vertices(const TriangleMesh& mesh, Column<std::uint32_t> indices) {
+/// The vertices of `mesh` that are used, in their order, with what they carry. `number` has kNoId for each
+/// vertex, before and after.
+TriangleMesh with_used_vertices(const TriangleMesh& mesh, Column<std::uint32_t> indices,
+                                Column<std::uint32_t>& number) {
   TriangleMesh out;
   out.origin = mesh.origin;
-  // The new number of each vertex, then the old one of each that is used.
-  Column<std::uint32_t> number(mesh.positions.size(), kNoId), used;
-  for (const std::uint32_t vertex : indices) number[vertex] = 0;
-  std::uint32_t count = 0;
-  for (std::uint32_t& n : number) n = n == kNoId ? kNoId : count++;
-  used.resize_uninitialized(count);
-  for (std::uint32_t i = 0; i < number.size(); ++i)
-    if (number[i] != kNoId) used[number[i]] = i;
+  Column<std::uint32_t> used;
+  for (const std::uint32_t vertex : indices)
+    if (number[vertex] == kNoId) number[vertex] = 0, used.push_back(vertex);
+  if (!std::ranges::is_sorted(used)) std::ranges::sort(used);
+  for (std::uint32_t i = 0; i < used.size(); ++i) number[used[i]] = i;
   out.positions = picked(mesh.positions, used, 1);
   for (const MeshAttribute& a : mesh.attributes)
     if (a.domain == AttributeDomain::vertex) out.attributes.push_back(picked(a, used));
   out.indices = std::move(indices);
   for_all(out.indices.size(), [&](std::size_t i) { out.indices[i] = number[out.indices[i]]; });
+  for (const std::uint32_t vertex : used) number[vertex] = kNoId;
   return out;
 }
 
@@ -63,15 +63,19 @@ TriangleMesh make_strokes(const TriangleMesh& mesh, const Column<std::uint32_t>&
     indices[3 * i] = ends[2 * i];
     indices[3 * i + 1] = indices[3 * i + 2] = ends[2 * i + 1];
   });
-  TriangleMesh strokes = with_used_vertices(mesh, std::move(indices));
+  Column<std::uint32_t> number(mesh.positions.size(), kNoId);
+  TriangleMesh strokes = with_used_vertices(mesh, std::move(indices), number);
   strokes.material_slots = std::move(slots);
   return strokes;
 }
 
 std::vector<StrokeSlot> split_by_slot(TriangleMesh strokes) {
   std::vector<StrokeSlot> parts;
-  if (strokes.material_slots.empty()) {
-    if (strokes.triangle_count() > 0) parts.push_back({std::move(strokes), 0});
+  const auto has_first_slot = [&](std::uint16_t slot) { return slot == strokes.material_slots[0]; };
+  if (std::ranges::all_of(strokes.material_slots, has_first_slot)) {
+    const std::uint16_t slot = strokes.material_slots.empty() ? std::uint16_t{0} : strokes.material_slots[0];
+    strokes.material_slots.clear();
+    if (strokes.triangle_count() > 0) parts.push_back({std::move(strokes), slot});
     return parts;
   }
   std::map<std::uint16_t, std::size_t> part_of;
@@ -85,9 +89,10 @@ std::vector<StrokeSlot> split_by_slot(TriangleMesh strokes) {
       numbers[found->second].push_back(3 * i + static_cast<std::uint32_t>(k));
     }
   }
+  Column<std::uint32_t> number(strokes.positions.size(), kNoId);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     TriangleMesh& own = parts[part].strokes;
-    own = with_used_vertices(strokes, std::move(indices[part]));
+    own = with_used_vertices(strokes, std::move(indices[part]), number);
     for (const MeshAttribute& a : strokes.attributes)
       if (a.domain == AttributeDomain::corner) own.attributes.push_back(picked(a, numbers[part]));
   }
@@ -97,12 +102,6 @@ std::vector<StrokeSlot> split_by_slot(TriangleMesh strokes) {
 double usual_stroke_width(const Box& box, std::size_t strokes) {
   const double diagonal = box.empty() ? 0 : length(Vec3d(box.extent()));
   return diagonal > 0 ? diagonal / std::max(200.0, std::sqrt(static_cast<double>(strokes))) : 1;
-}
-
-Box corner_box(const TriangleMesh& mesh) {
-  Box box;
-  each_corner(mesh, [&](const Vec3f& p) { box.grow(p); });
-  return box;
 }
 
 void StrokeCount::add(const TriangleMesh& strokes) {

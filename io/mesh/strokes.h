@@ -30,9 +30,6 @@ std::vector<StrokeSlot> split_by_slot(TriangleMesh strokes);
 /// all over a surface leave few gaps and do not hide each other.
 double usual_stroke_width(const Box& box, std::size_t strokes);
 
-/// The box of all corners.
-Box corner_box(const TriangleMesh& mesh);
-
 struct StrokeCount {
   std::size_t points = 0, lines = 0;
 

@@ -97,23 +97,20 @@ void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colo
   MeshAttribute color;
   color.name = kColorAttribute, color.components = 3;
   Column<float>& numbers = colors.numbers;
-  constexpr std::size_t kPart = std::size_t{1} << 16;
   const bool up_to_255 = found.greatest > 1 && found.are_whole;
   if (numbers.empty()) {
     color.srgb = std::move(colors.levels.empty() ? colors.painted : colors.levels);
   } else if (up_to_255 || (found.are_bytes && found.greatest <= 1)) {
     const float scale = up_to_255 ? 1 : 255;
     color.srgb.resize_uninitialized(numbers.size());
-    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        color.srgb[i] = numbers[i] == kNoObjColor
-                            ? std::uint8_t{255}
-                            : static_cast<std::uint8_t>(std::min(numbers[i] * scale + 0.5f, 255.0f));
+    for_all(numbers.size(), [&](std::size_t i) {
+      color.srgb[i] = numbers[i] == kNoObjColor
+                          ? std::uint8_t{255}
+                          : static_cast<std::uint8_t>(std::min(numbers[i] * scale + 0.5f, 255.0f));
     });
   } else {
-    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        numbers[i] = numbers[i] == kNoObjColor ? 1 : linear_of_obj_color(numbers[i]);
+    for_all(numbers.size(), [&](std::size_t i) {
+      numbers[i] = numbers[i] == kNoObjColor ? 1 : linear_of_obj_color(numbers[i]);
     });
     color.floats = std::move(numbers);
   }

@@ -37,7 +37,7 @@ class ObjLoad {
     read_all_faces();
     assign_slots(chunks_, text_.data(), obj_);
     stop_at_first_failure();
-    note_rounding();
+    note_rounding(obj_, [this](const Vec3d& centre) { read_positions_from(centre); });
     drop_unused_columns();
     take_colors();
     note_skipped();
@@ -174,12 +174,6 @@ class ObjLoad {
     });
   }
 
-  void note_rounding() {
-    std::string words =
-        find_rounding(obj_.mesh, [this](const Vec3d& centre) { read_positions_from(centre); });
-    if (!words.empty()) obj_.notices.push_back({0, std::move(words), {}});
-  }
-
   /// After all vertices, because how a polygon is cut depends on them, and they may come behind it.
   void read_all_faces() {
     const ObjFaceOptions options{.positions_known = !first_failure()};
@@ -282,7 +276,7 @@ ParsedMesh parse_obj(const std::string& path) {
 }
 
 /// One material for each image that the file names, and a last one for faces without, if slots tell them
-/// apart.
+/// apart, and for points and lines.
 static void add_texture_materials(const std::string& path, const std::vector<MeshStatement>& names,
                                   const std::function<TextPosition(std::uint64_t)>& position,
                                   MeshFile& file) {
@@ -296,9 +290,14 @@ static void add_texture_materials(const std::string& path, const std::vector<Mes
     file.texture_places.push_back(Location{path, place.line, place.column});
     file.materials.push_back(
         image_material(name.words, static_cast<std::uint32_t>(file.textures.size() - 1)));
-    if (file.mesh.material_slots.empty()) return;
+    if (file.mesh.material_slots.empty()) break;
   }
+  const std::size_t strokes = file.strokes.triangle_count();
+  if (file.mesh.material_slots.empty() && strokes == 0) return;
   file.materials.push_back(image_material("without image", kNoId));
+  if (strokes > 0)
+    file.strokes.material_slots =
+        Column<std::uint16_t>(strokes, static_cast<std::uint16_t>(file.materials.size() - 1));
 }
 
 /// Vertices without faces, points and lines are points.

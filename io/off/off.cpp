@@ -33,10 +33,12 @@ class OffLoad {
       next_ = text_.data();
       read_header();
       read_counts();
-      read_vertices();
+      vertices_ = next_;
+      if (has_unsaid_colors()) header_.has_color = true;
+      read_vertices({});
       recentre();
       read_faces();
-      note_rounding();
+      note_rounding(parsed_, [this](const Vec3d& centre) { read_vertices(centre); });
     } catch (const MeshFailure& failure) {
       fail_at_line(path_, text_, failure);
     }
@@ -128,17 +130,18 @@ class OffLoad {
     return x;
   }
 
-  void read_vertices() {
+  /// Their positions less `centre`.
+  void read_vertices(const Vec3d& centre) {
     TriangleMesh& mesh = parsed_.mesh;
-    vertices_ = next_;
-    if (has_unsaid_colors()) header_.has_color = true;
+    next_ = vertices_;
+    oddities_.bad_normals = {};
     mesh.positions.resize_uninitialized(vertex_count_);
     if (header_.has_normal) mesh.normals.resize_uninitialized(vertex_count_);
     if (header_.has_uv) mesh.uvs.resize_uninitialized(vertex_count_);
     for (std::uint64_t i = 0; i < vertex_count_; ++i) {
       for (int k = 0; k < 3; ++k) {
         mesh.positions[i][k] =
-            read_value([&](const char* p, float& x) { return read_coordinate_from(mesh.origin[k], p, x); });
+            read_value([&](const char* p, float& x) { return read_coordinate_from(centre[k], p, x); });
       }
       if (header_.has_normal) {
         skip_space();
@@ -175,24 +178,7 @@ class OffLoad {
     const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false);
     if (!centre) return;
     parsed_.mesh.origin = *centre;
-    oddities_ = {};
-    read_vertices_again();
-  }
-
-  void read_vertices_again() {
-    next_ = vertices_;
-    read_vertices();
-  }
-
-  void note_rounding() {
-    const Vec3d origin = parsed_.mesh.origin;
-    const MeshOddities oddities = oddities_;
-    std::string words = find_rounding(parsed_.mesh, [this](const Vec3d& centre) {
-      parsed_.mesh.origin = centre;
-      read_vertices_again();
-    });
-    parsed_.mesh.origin = origin, oddities_ = oddities;
-    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
+    read_vertices(*centre);
   }
 
   /// Three or four numbers: the rest of the line tells.

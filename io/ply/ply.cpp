@@ -222,7 +222,7 @@ class PlyLoad {
       edges.ends[k] = static_cast<std::size_t>(scalar(element, kEdgeEnds[k]));
     edges.before = edge_count_;
     edge_count_ += element.count;
-    if (element.properties.size() > 2)
+    if (element.count > 0 && element.properties.size() > 2)
       note(element.where, "of element 'edge' only 'vertex1' and 'vertex2' are read");
     return edges;
   }
@@ -429,9 +429,7 @@ class PlyLoad {
 
   void note_rounding() {
     if (vertices_.element->count == 0 || !has_digits()) return;
-    std::string words =
-        find_rounding(parsed_.mesh, [this](const Vec3d& centre) { read_vertices_from(centre); });
-    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
+    oktett::note_rounding(parsed_, [this](const Vec3d& centre) { read_vertices_from(centre); });
   }
 
   /// Whether positions may have more digits than floats.

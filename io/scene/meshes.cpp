@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/mesh_geometry.h"
 #include "io/cache/scene_cache.h"
 #include "io/image/library.h"
 #include "io/mesh/reading.h"
@@ -127,12 +128,13 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, const MeshO
   if (found != entries_.end()) return found->second;
   SceneCache* const cache = SceneCache::current();
   MeshFile file = cache != nullptr ? cache->load_mesh(path, options) : load_mesh(path, options);
-  return entries_.emplace(key, add(std::move(file), scene)).first->second;
+  const Entry& entry = entries_.emplace(key, add(std::move(file), scene)).first->second;
+  entry_of_[entry.mesh.get()] = &entry;
+  return entry;
 }
 
 const MeshLibrary::Entry& MeshLibrary::entry_of(const TriangleMesh& mesh) const {
-  const auto is_it = [&](const auto& entry) { return entry.second.mesh.get() == &mesh; };
-  return std::ranges::find_if(entries_, is_it)->second;
+  return *entry_of_.at(&mesh);
 }
 
 std::vector<MeshShape> MeshLibrary::Entry::stroke_shapes(double width, const Location& where,

@@ -53,6 +53,7 @@ class MeshLibrary {
 
  private:
   std::map<std::pair<std::string, bool>, Entry> entries_;  ///< by canonical path and MeshOptions::weld
+  std::map<const TriangleMesh*, const Entry*> entry_of_;
 };
 
 }  // namespace oktett

@@ -361,8 +361,7 @@ class StlLoad {
       parsed_.mesh.origin = *centre;
       read_again(*centre);
     }
-    std::string words = find_rounding(parsed_.mesh, read_again);
-    if (!words.empty()) parsed_.notices.push_back({0, std::move(words), {}});
+    note_rounding(parsed_, read_again);
   }
 
   void read_chunks(std::vector<StlChunk>& chunks, const Vec3d& centre) {

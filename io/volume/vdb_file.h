@@ -32,7 +32,8 @@ struct PlacedDensities {
 /// a warning for densities below 0, which count as 0.
 PlacedDensities read_vdb(const std::string& path, const std::string& name, std::vector<Warning>& warnings);
 
-// ---- The shared library that knows OpenVDB, liboktett_volumes: to start with it takes 50 ms.
+// ---- The shared library that knows OpenVDB, liboktett_volumes. It takes 50 ms to start, so it is loaded
+// with the first such file.
 
 /// A grid as it is in a file.
 struct VdbDensities {

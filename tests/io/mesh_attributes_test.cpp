@@ -275,6 +275,16 @@ TEST(PlyAttributes, ImagesAreThoseOfTheHeader) {
       "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
   ASSERT_EQ(one.materials.size(), 1u);
   EXPECT_TRUE(one.mesh.material_slots.empty());
+  // Lines have no place in images.
+  const MeshFile lined = files.load(
+      "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\n"
+      "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n"
+      "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n0 1\n");
+  ASSERT_EQ(lined.materials.size(), 2u);
+  EXPECT_EQ(lined.materials[1].color_texture, kNoId);
+  EXPECT_TRUE(lined.mesh.material_slots.empty());
+  EXPECT_EQ(to_vector(lined.strokes.material_slots), std::vector<std::uint16_t>{1});
   std::string bare = text;
   bare.replace(bare.find("texcoord"), 8, "somelist");
   EXPECT_EQ(files.warnings(bare),

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "accel/accel.h"
@@ -353,6 +354,32 @@ TEST(Recentre, NodesOfGltfFilesKeepDigits) {
   // One mesh of a node here and one there cannot keep them.
   EXPECT_EQ(count_rounded(load_mesh(dir.write("d.gltf", gltf_of(far + R"(,{"mesh":0})", "0,1"))).warnings),
             1u);
+}
+
+/// Of points and lines alone two vertices are too few to tell that they are far.
+TEST(Recentre, StrokesCountFromWhereTrianglesDo) {
+  const TempDir dir;
+  std::string text = gltf_of(R"({"mesh":0,"translation":[432100,5411000,300]})", "0");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace(R"({"attributes":{"POSITION":0}})",
+          R"({"attributes":{"POSITION":0}},{"mode":1,"attributes":{"POSITION":1}})");
+  replace(
+      R"("max":[1,1,0]})",
+      R"("max":[1,1,0]},{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3","min":[0,0,0],"max":[1,0,0]})");
+  const std::string path = dir.write("a.gltf", text);
+  const MeshFile file = load_mesh(path);
+  ASSERT_EQ(file.strokes.triangle_count(), 1u);
+  EXPECT_FALSE(file.mesh.origin == Vec3d{});
+  EXPECT_EQ(file.strokes.origin, file.mesh.origin);
+  expect_near(corners_of(file.mesh), {{432100, 5411000, 300}, {432101, 5411000, 300}, {432100, 5411001, 300}},
+              1e-7);
+  // So the line is as wide as a part of what is seen.
+  for (const Object& object : scene_from_mesh(path).objects)
+    EXPECT_LT(std::get<MeshShape>(object.shape).stroke_width, 0.01);
 }
 
 TEST(Recentre, ObjectsTooFarFromOthersAreAWarning) {

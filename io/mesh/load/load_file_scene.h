@@ -11,8 +11,10 @@ namespace oktett {
 /// Whether files of the format of `path` place meshes: 3MF and glTF.
 bool has_file_scene(const std::string& path);
 
-/// What such a file shows. Throws Error as load_mesh does, also for options that are for glTF files
-/// unless it is one.
+/// Throws Error if something is asked that only glTF files have, unless it is one.
+void check_gltf_options(const std::string& path, const GltfOptions& options);
+
+/// What a file of several meshes shows. Throws Error as load_mesh and check_gltf_options do.
 FileScene load_file_scene(const std::string& path, const GltfOptions& options);
 
 }  // namespace oktett

@@ -91,9 +91,13 @@ bool has_file_scene(const std::string& path) {
   return format != nullptr && format->load_scene != nullptr;
 }
 
-FileScene load_file_scene(const std::string& path, const GltfOptions& options) {
+void check_gltf_options(const std::string& path, const GltfOptions& options) {
   if (!is_gltf_file(path) && options.is_for_gltf())
     throw Error(Location{path}, "a time and variants are for glTF files");
+}
+
+FileScene load_file_scene(const std::string& path, const GltfOptions& options) {
+  check_gltf_options(path, options);
   return format_of(path).load_scene(path, options);
 }
 

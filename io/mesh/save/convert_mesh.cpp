@@ -214,7 +214,7 @@ void note_scene(const FileScene& scene, MeshLosses& losses) {
 
 MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses& losses) {
   if (!has_file_scene(path)) {
-    if (options.gltf.is_for_gltf()) throw Error(Location{path}, "a time and variants are for glTF files");
+    check_gltf_options(path, options.gltf);
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
     if (format != nullptr && format->note_unread != nullptr)

@@ -125,12 +125,8 @@ class VdbReading {
   static Affine place_of(const openvdb::math::Transform& transform, const openvdb::CoordBBox& box,
                          const std::uint32_t (&size)[3]) {
     // OpenVDB multiplies rows by matrices from the right.
-    const openvdb::math::Mat4d m = transform.baseMap()->getAffineMap()->getMat4();
-    Affine map;
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 4; ++column)
-        map.m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = m(column, row);
-    }
+    const openvdb::math::Mat4d rows = transform.baseMap()->getAffineMap()->getMat4().transpose();
+    const Affine map = Affine::from_rows(rows.asPointer());
     const openvdb::Coord& lo = box.min();
     return map * Affine::translation({double(lo.x()), double(lo.y()), double(lo.z())}) *
            Affine::scaling({size[0] - 1.0, size[1] - 1.0, size[2] - 1.0});
