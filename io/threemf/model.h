@@ -16,6 +16,10 @@
 
 namespace oktett {
 
+/// Components of components may multiply: a short file would show any number of meshes.
+inline constexpr std::uint64_t kMostThreeMfShown = 1'000'000;
+inline constexpr int kMostThreeMfLevels = 64;
+
 /// How triangles look: as a base material, as an image, or as the colours of their corners.
 struct ThreeMfLook {
   enum class Kind : std::uint8_t { base, image, colors };

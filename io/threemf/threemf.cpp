@@ -19,11 +19,6 @@ namespace oktett {
 
 namespace {
 
-/// Components of components may multiply: a short file would show any number of meshes.
-constexpr std::size_t kMostPlaces = 1'000'000;
-constexpr int kMostLevels = 64;
-constexpr double kMostEntry = 1e15;
-
 const ThreeMfLibrary& threemf_library() {
   static const ThreeMfLibrary* const library = reinterpret_cast<ThreeMfLibraryEntry>(load_library(
       {OKTETT_THREEMF_LIBRARY, kThreeMfLibraryEntry, "reads 3MF files", std::size_t{64} << 20}))();
@@ -90,29 +85,22 @@ class ThreeMfReading {
 
   /// Shows an object in a place of `outer`.
   void place(const ThreeMfPart& part, const Affine& outer, const std::string& outer_name, int level) {
-    if (++places_ > kMostPlaces)
-      fail("its components show more than " + std::to_string(kMostPlaces) + " objects");
-    if (level > kMostLevels)
-      fail("its components are nested deeper than " + std::to_string(kMostLevels) + " levels");
+    if (++places_ > kMostThreeMfShown)
+      fail("its components show more than " + std::to_string(kMostThreeMfShown) + " objects");
+    if (level > kMostThreeMfLevels)
+      fail("its components are nested deeper than " + std::to_string(kMostThreeMfLevels) + " levels");
     ThreeMfObject& object = model_.objects[part.object];
     const std::string& name = object.name.empty() ? outer_name : object.name;
     const Affine map = outer * part.place;
     for (const ThreeMfPart& inner : object.parts) place(inner, map, name, level + 1);
-    if (!object.parts.empty() || object.indices.empty()) return;
-    if (!is_usable(map)) {
+    std::uint32_t& mesh = mesh_of_[part.object];
+    if (mesh == kNoId && object.indices.empty()) return;
+    if (!is_usable_place(map)) {
       warn("the transform of object " + quote_name(name) + " is singular or out of range; it is skipped");
       return;
     }
-    std::uint32_t& mesh = mesh_of_[part.object];
     if (mesh == kNoId) mesh = add_mesh(object);
     scene_.placements.push_back({name, mesh, map});
-  }
-
-  static bool is_usable(const Affine& map) {
-    for (const auto& row : map.m)
-      for (const double x : row)
-        if (!(std::abs(x) <= kMostEntry)) return false;
-    return map.is_invertible();
   }
 
   std::uint32_t add_mesh(ThreeMfObject& object) {
@@ -125,7 +113,7 @@ class ThreeMfReading {
              " is out of range: it has " + std::to_string(object.positions.size()) + " vertices");
     SharedMesh shared{object.name, std::make_shared<TriangleMesh>(), {}};
     TriangleMesh& mesh = *shared.mesh;
-    mesh.positions = std::move(object.positions), mesh.indices = object.indices;
+    mesh.positions = std::move(object.positions), mesh.indices = std::move(object.indices);
     set_slots(object, shared);
     set_uvs(object, mesh);
     if (!object.colors.empty()) {
@@ -173,18 +161,14 @@ class ThreeMfReading {
   ThreeMfModel model_;
   FileScene scene_;
   std::vector<std::uint32_t> mesh_of_;  ///< index in the scene, by that of the object
-  std::size_t places_ = 0;
+  std::uint64_t places_ = 0;
 };
 
 }  // namespace
 
-bool can_read_threemf() { return true; }
-
 FileScene load_threemf_scene(const std::string& path) { return ThreeMfReading(path).run(); }
 
 #else
-
-bool can_read_threemf() { return false; }
 
 FileScene load_threemf_scene(const std::string& path) {
   throw Error(Location{path}, "is a 3MF file, and this program is built without lib3mf");

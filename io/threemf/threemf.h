@@ -7,9 +7,6 @@
 
 namespace oktett {
 
-/// Whether this build reads such files.
-bool can_read_threemf();
-
 /// Reads what the build of a 3MF file places: meshes, also as components of others, in the unit of the file.
 /// Base materials, colours and images of its triangles become materials; colours stand in kColorAttribute of
 /// the corners. What is left out is a warning. Throws Error, of kind io if the file cannot be read.

@@ -247,12 +247,12 @@ TEST_F(ThreeMf, WhatIsLeftOutIsTold) {
 // A short file may ask for any number of meshes, of which lib3mf would visit each.
 TEST_F(ThreeMf, ComponentsDoNotMultiplyWithoutEnd) {
   std::string objects = tetrahedron("id=\"1\"");
-  for (int i = 2; i < 60; ++i) {
+  for (int i = 2; i < 24; ++i) {
     const std::string inner = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
     objects +=
         "<object id=\"" + std::to_string(i) + "\"><components>" + inner + inner + "</components></object>";
   }
-  EXPECT_EQ(error(package(built(objects, "<item objectid=\"59\"/>"))),
+  EXPECT_EQ(error(package(built(objects, "<item objectid=\"23\"/>"))),
             "a.3mf: its components show more than 1000000 objects");
   objects = tetrahedron("id=\"1\"");
   for (int i = 2; i < 90; ++i)
@@ -260,6 +260,27 @@ TEST_F(ThreeMf, ComponentsDoNotMultiplyWithoutEnd) {
                std::to_string(i - 1) + "\"/></components></object>";
   EXPECT_EQ(error(package(built(objects, "<item objectid=\"89\"/>"))),
             "a.3mf: its components are nested deeper than 64 levels");
+}
+
+/// What lib3mf does not take for the number, the part or the owner of a component is not taken for it here.
+TEST_F(ThreeMf, ComponentsAreCountedAsTheLibraryReadsThem) {
+  const auto objects = [](int count, const std::string& attributes, const std::string& beside) {
+    std::string text = tetrahedron("id=\"1\"");
+    for (int i = 2; i < count; ++i) {
+      const std::string inner = "<component objectid=\"" + std::to_string(i - 1) + "\" " + attributes + "/>";
+      text += "<object id=\"" + std::to_string(i) + "\"><components>" + beside + inner + inner +
+              "</components></object>";
+    }
+    return built(text, "<item objectid=\"" + std::to_string(count - 1) + "\"/>");
+  };
+  const std::string extension = "xmlns:x=\"http://example.com/x\" ";
+  for (const std::string& attributes :
+       {extension + "x:objectid=\"1\"", extension + "x:path=\"/q\"", std::string("path=\"/q\"")})
+    EXPECT_EQ(error(package(objects(24, attributes, ""))),
+              "a.3mf: its components show more than 1000000 objects")
+        << attributes;
+  EXPECT_EQ(error(package(objects(24, "", "<x:object " + extension + "id=\"777\"/>"))),
+            "a.3mf: cannot be read as a 3MF file: an object begins inside another one");
 }
 
 TEST_F(ThreeMf, FilesThatUnpackToTooMuchAreErrors) {

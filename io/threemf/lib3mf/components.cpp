@@ -3,14 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 
 #include "core/error.h"
+#include "io/threemf/model.h"
 
 namespace oktett {
 namespace {
-
-constexpr std::uint64_t kMostShown = 1'000'000;
-constexpr int kMostNested = 64;
 
 /// An object: its part of the package and its id.
 using ObjectKey = std::pair<std::string, std::string>;
@@ -20,14 +19,16 @@ class ElementScanner {
  public:
   explicit ElementScanner(std::string_view text) : text_(text) {}
 
-  /// Goes to the next element that begins. False behind the last one, or where the text is no XML; then
-  /// lib3mf says so.
+  /// Goes to the next place where an element begins or ends. False behind the last one, or where the text is
+  /// no XML; then lib3mf says so.
   bool next() {
     for (;;) {
       at_ = text_.find('<', at_);
       if (at_ == std::string_view::npos) return false;
       if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>") || skip("<!", ">")) continue;
-      const std::size_t end = text_.find_first_of(" \t\r\n/>", ++at_);
+      is_end = text_.substr(at_).starts_with("</");
+      at_ += is_end ? 2 : 1;
+      const std::size_t end = text_.find_first_of(" \t\r\n/>", at_);
       if (end == std::string_view::npos) return false;
       name = local(text_.substr(at_, end - at_));
       at_ = end;
@@ -46,13 +47,18 @@ class ElementScanner {
     const std::size_t end = text_.find(text_[quote], quote + 1);
     if (end == std::string_view::npos) return false;
     const std::string_view whole = text_.substr(at_, equals - at_);
-    attribute = local(whole.substr(0, whole.find_last_not_of(" \t\r\n") + 1));
+    attribute = whole.substr(0, whole.find_last_not_of(" \t\r\n") + 1);
     value = text_.substr(quote + 1, end - quote - 1);
     at_ = end + 1;
     return true;
   }
 
-  std::string_view name, attribute, value;  ///< names without prefixes
+  /// Whether the element ends where it begins. Asked behind its last attribute.
+  bool is_empty() const { return at_ < text_.size() && text_[at_] == '/'; }
+
+  std::string_view name;              ///< without its prefix
+  bool is_end = false;                ///< the element ends here
+  std::string_view attribute, value;  ///< with its prefix
 
  private:
   static std::string_view local(std::string_view name) { return name.substr(name.find(':') + 1); }
@@ -72,22 +78,37 @@ class Components {
  public:
   explicit Components(const std::string& path) : path_(path) {}
 
+  /// lib3mf knows namespaces, and this does not. So objects may not stand in objects, whatever their prefix,
+  /// and a component with a path counts with each object that it may mean.
   void add(const std::string& part, std::string_view text) {
     ElementScanner scanner(text);
+    if (!scanner.next() || scanner.name != "model") return;
     ObjectKey object;
+    bool is_inside = false;
+    std::set<std::string> begun;
     while (scanner.next()) {
-      const bool is_object = scanner.name == "object";
-      if (!is_object && scanner.name != "component") continue;
-      ObjectKey key{part, ""};
-      while (scanner.next_attribute()) {
-        if (scanner.attribute == (is_object ? "id" : "objectid")) key.second = number(scanner.value);
-        if (scanner.attribute == "path" && !is_object)
-          key.first = scanner.value.substr(scanner.value.starts_with('/') ? 1 : 0);
+      if (scanner.name == "object") {
+        if (scanner.is_end) {
+          is_inside = false;
+          continue;
+        }
+        if (is_inside) fail("an object begins inside another one");
+        object = {part, ""};
+        while (scanner.next_attribute())
+          if (scanner.attribute == "id") object.second = number(scanner.value);
+        begun.insert(object.second);
+        is_inside = !scanner.is_empty();
+      } else if (scanner.name == "component" && !scanner.is_end) {
+        std::vector<std::string> paths;
+        std::string id;
+        while (scanner.next_attribute()) {
+          if (scanner.attribute == "objectid") id = number(scanner.value);
+          if (scanner.attribute == "path" || scanner.attribute.ends_with(":path"))
+            paths.push_back(part_at(scanner.value));
+        }
+        if (paths.empty() || begun.contains(id)) paths.push_back(part);
+        for (std::string& path : paths) inner_[object].push_back({std::move(path), id});
       }
-      if (is_object)
-        object = key;
-      else
-        inner_[object].push_back(key);
     }
   }
 
@@ -96,28 +117,36 @@ class Components {
   }
 
  private:
+  [[noreturn]] void fail(const char* words) const {
+    throw Error(Location{path_}, std::string("cannot be read as a 3MF file: ") + words);
+  }
+
+  std::string part_at(std::string_view path) const {
+    if (path.find('&') != std::string_view::npos) fail("expected the path of a part without '&'");
+    return std::string(path.substr(path.starts_with('/') ? 1 : 0));
+  }
+
   /// An id as lib3mf understands it, which reads digits and what XML writes otherwise.
   std::string number(std::string_view text) const {
-    if (text.find('&') != std::string_view::npos)
-      throw Error(Location{path_}, "cannot be read as a 3MF file: expected digits as the id of an object");
+    if (text.find('&') != std::string_view::npos) fail("expected digits as the id of an object");
     const std::size_t first = text.find_first_not_of(" \t\r\n+0");
     if (first == std::string_view::npos) return "0";
     return std::string(text.substr(first, text.find_first_not_of("0123456789", first) - first));
   }
 
   std::uint64_t shown_by(const ObjectKey& key, int level) {
-    if (level > kMostNested)
+    if (level > kMostThreeMfLevels)
       throw Error(Location{path_},
-                  "its components are nested deeper than " + std::to_string(kMostNested) + " levels");
+                  "its components are nested deeper than " + std::to_string(kMostThreeMfLevels) + " levels");
     const auto found = inner_.find(key);
     if (found == inner_.end()) return 1;
     if (const auto known = shown_.find(key); known != shown_.end()) return known->second;
     std::uint64_t sum = 1;
     for (const ObjectKey& inner : found->second) {
       sum += shown_by(inner, level + 1);
-      if (sum > kMostShown)
+      if (sum > kMostThreeMfShown)
         throw Error(Location{path_},
-                    "its components show more than " + std::to_string(kMostShown) + " objects");
+                    "its components show more than " + std::to_string(kMostThreeMfShown) + " objects");
     }
     shown_[key] = sum;
     return sum;

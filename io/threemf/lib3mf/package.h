@@ -6,10 +6,10 @@
 
 namespace oktett {
 
-/// Unpacks all files of the archive and counts their bytes, and what the components of its models show, see
-/// check_components. Throws Error, which names `path`, if it or one of
-/// them is damaged, or if they are more than most_unpacked in all. lib3mf reads archives with libzip, as this
-/// does, but trusts the sizes that they state.
+/// Unpacks all files of the archive and counts their bytes, and what the components of its models show
+/// (check_components). Throws Error, which names `path`, if the archive or a file in it is damaged, or if
+/// they unpack to more than most_unpacked in all. lib3mf, too, reads archives with libzip, but trusts the
+/// sizes that they state.
 void check_package(const std::string& path, std::string_view bytes);
 
 }  // namespace oktett

@@ -86,13 +86,13 @@ class Reading {
     fail(std::string("cannot be read as a 3MF file: ") + (text != nullptr ? text : "unknown reason"));
   }
 
-  /// A text that get(buffer, size, needed) gives.
-  template <class Get>
-  std::string text_of(const Get& get, const Handle& object) const {
+  /// The text that get(object, which..., buffer, size, needed) gives.
+  template <class Get, class... Which>
+  std::string text_of(const Handle& object, const Get& get, Which... which) const {
     ULONG size = 0;
-    check(get(nullptr, 0, &size), object);
+    check(get(object.get(), which..., nullptr, 0, &size), object);
     std::string text(std::size_t{size} + 1, '\0');
-    check(get(text.data(), size + 1, &size), object);
+    check(get(object.get(), which..., text.data(), size + 1, &size), object);
     return text.c_str();
   }
 
@@ -107,11 +107,7 @@ class Reading {
     std::set<std::string> said;
     for (DWORD i = 0; i < count && said.size() < kMostWarnings; ++i) {
       DWORD code = 0;
-      const std::string words = text_of(
-          [&](LPSTR buffer, ULONG size, ULONG* needed) {
-            return lib3mf_reader_getwarningutf8(reader.get(), i, &code, buffer, size, needed);
-          },
-          reader);
+      const std::string words = text_of(reader, lib3mf_reader_getwarningutf8, i, &code);
       if (said.insert(words).second) out_.warnings.push_back("lib3mf: " + words);
     }
   }
@@ -133,11 +129,7 @@ class Reading {
       check(lib3mf_resourceiterator_getcurrent(iterator.get(), object.put()), iterator);
       ThreeMfObject& out = out_.objects.emplace_back();
       object_of_[id_of(object)] = static_cast<std::uint32_t>(out_.objects.size() - 1);
-      out.name = text_of(
-          [&](LPSTR buffer, ULONG size, ULONG* needed) {
-            return lib3mf_object_getnameutf8(object.get(), buffer, size, needed);
-          },
-          object);
+      out.name = text_of(object, lib3mf_object_getnameutf8);
       BOOL is_mesh = 0;
       check(lib3mf_object_ismeshobject(object.get(), &is_mesh), object);
       if (is_mesh)
@@ -254,11 +246,7 @@ class Reading {
         fail("a triangle has base material " + std::to_string(number) + " of a group of " +
              std::to_string(count));
       ThreeMfLook look;
-      look.name = text_of(
-          [&](LPSTR buffer, ULONG size, ULONG* needed) {
-            return lib3mf_basematerial_getnameutf8(materials.get(), number, buffer, size, needed);
-          },
-          materials);
+      look.name = text_of(materials, lib3mf_basematerial_getnameutf8, number);
       check(lib3mf_basematerial_getdisplaycolor(materials.get(), number, &look.rgba[0], &look.rgba[1],
                                                 &look.rgba[2], &look.rgba[3]),
             materials);
@@ -295,11 +283,7 @@ class Reading {
     Handle texture, attachment;
     check(lib3mf_model_gettexture2dbyid(model_.get(), id, texture.put()), model_);
     ThreeMfImage image;
-    image.path = text_of(
-        [&](LPSTR buffer, ULONG size, ULONG* needed) {
-          return lib3mf_texture2d_getpathutf8(texture.get(), buffer, size, needed);
-        },
-        texture);
+    image.path = text_of(texture, lib3mf_texture2d_getpathutf8);
     check(lib3mf_texture2d_getattachment(texture.get(), attachment.put()), texture);
     ULONG64 size = 0;
     check(lib3mf_attachment_getstreamsize(attachment.get(), &size), attachment);
