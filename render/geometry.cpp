@@ -39,6 +39,34 @@ bool is_solid(const Shape& shape, const std::vector<Prototype>& prototypes) {
   return std::visit(IsSolid{prototypes}, shape);
 }
 
+/// Whether light enters what is of this material.
+static bool lets_light_in(const Scene& scene, std::uint32_t material) {
+  return material < scene.materials.size() && encloses(scene.materials[material]);
+}
+
+/// The triangles that light enters.
+static TriangleMesh entered_part(const MeshShape& shape, const Scene& scene) {
+  const TriangleMesh& mesh = *shape.mesh;
+  TriangleMesh part;
+  part.positions = mesh.positions;
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const std::size_t slot = mesh.material_slots[i];
+    if (slot >= shape.slot_materials.size() || !lets_light_in(scene, shape.slot_materials[slot])) continue;
+    for (std::size_t k = 0; k < 3; ++k) part.indices.push_back(mesh.indices[3 * i + k]);
+  }
+  return part;
+}
+
+bool has_inside(const Object& object, const Scene& scene) {
+  if (is_solid(object.shape, scene.prototypes)) return true;
+  const auto* const shape = std::get_if<MeshShape>(&object.shape);
+  if (shape == nullptr || shape->mesh == nullptr || shape->stroke_width > 0 || object.material != kNoId ||
+      shape->mesh->material_slots.empty())
+    return false;
+  const TriangleMesh part = entered_part(*shape, scene);
+  return part.triangle_count() > 0 && find_open_edges(part).count == 0;
+}
+
 // ---- Geometries of objects.
 
 namespace {
@@ -138,8 +166,10 @@ class WorldBuilder {
       still.factors.push_back({{0, object.transform}});
       moving.motion = std::make_shared<const Motion>(std::move(still));
     }
-    moving.bent = std::make_shared<const MeshShape>(mesh), moving.bent_object = id;
-    world_.triangles += mesh.mesh->triangle_count(), world_.bent_triangles += mesh.mesh->triangle_count();
+    moving.bent = std::make_shared<const MeshShape>(mesh), moving.user = id;
+    const std::size_t count = mesh.mesh->triangle_count();
+    world_.primitives += count, world_.bent_triangles += count;
+    if (mesh.stroke_width == 0) world_.triangles += count;
     keep(mesh.mesh);
     world_.moving.push_back(std::move(moving));
   }
@@ -306,9 +336,7 @@ class WorldBuilder {
   }
 
   bool may_enclose(const Object& object) const {
-    const auto encloses_slot = [&](std::uint32_t slot) {
-      return slot < scene_.materials.size() && encloses(scene_.materials[slot]);
-    };
+    const auto encloses_slot = [&](std::uint32_t slot) { return lets_light_in(scene_, slot); };
     const auto* mesh = std::get_if<MeshShape>(&object.shape);
     if (object.material != kNoId || mesh == nullptr) return encloses_slot(object.material);
     return std::ranges::any_of(mesh->slot_materials, encloses_slot);
@@ -317,7 +345,7 @@ class WorldBuilder {
   /// What ObjectMaterials::solid is for object number `id`.
   std::uint32_t solid(const Object& object, std::uint32_t id) {
     if (!world_.tracks_dielectrics || !may_enclose(object)) return kNoId;
-    if (!is_solid(object.shape, scene_.prototypes)) return kNoId;
+    if (!has_inside(object, scene_)) return kNoId;
     world_.has_enclosing_solids = true;
     return combination_ != kNoId ? combination_ : id;
   }
@@ -362,10 +390,10 @@ static void bend(World& world, MovingObject& object, double time, const BuildOpt
   object.mesh = mesh_at(shape, time);
   std::vector<Geometry> geometries;
   if (shape.stroke_width > 0)
-    world.objects[object.bent_object].strokes = std::make_shared<const StrokeParts>(
-        add_strokes(object.mesh, shape.stroke_width / 2, object.bent_object, geometries));
+    world.objects[object.user].strokes = std::make_shared<const StrokeParts>(
+        add_strokes(object.mesh, shape.stroke_width / 2, object.user, geometries));
   else
-    geometries.push_back({MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.bent_object});
+    geometries.push_back({MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user});
   object.shape = build_accel(std::move(geometries), options);
 }
 
@@ -387,8 +415,6 @@ void pose(World& world, double time, const BuildOptions& options) {
 static std::uint32_t object_of_geometry(const World& world, const Accel& accel, std::uint32_t geometry) {
   const auto found = world.structure_objects->find(&accel);
   if (found != world.structure_objects->end()) return found->second[geometry];
-  for (const MovingObject& object : world.moving)
-    if (object.shape.get() == &accel) return object.bent_object;
   // Else it is the structure of `pose`.
   const std::uint32_t first = world.still != nullptr && stats(*world.still).items > 0 ? 1 : 0;
   return geometry < first ? kNoId : world.moving[geometry - first].instance;

@@ -22,6 +22,10 @@ namespace oktett {
 /// instance has one if all objects of its prototype have.
 bool is_solid(const Shape& shape, const std::vector<Prototype>& prototypes);
 
+/// Whether light that enters the object is inside of something: the object is solid, or those triangles of
+/// its mesh are closed by themselves whose materials let light in, such as a glass with its label.
+bool has_inside(const Object& object, const Scene& scene);
+
 // ---- Geometries of objects.
 
 /// At least this many instances in a row become one geometry, which takes less memory.
@@ -49,12 +53,11 @@ using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint3
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
   MotionPointer motion;            ///< null: it stands still, but is bent
-  std::uint32_t user = kNoId;      ///< of the instance, as in Geometry
+  std::uint32_t user = kNoId;      ///< of the instance, as in Geometry; of what is bent, the object
   std::uint32_t instance = kNoId;  ///< the object, if it is an instance
   // Of a mesh that is bent, of which `shape` and `mesh` are those at a moment.
   std::shared_ptr<const MeshShape> bent{};
   std::shared_ptr<const TriangleMesh> mesh{};
-  std::uint32_t bent_object = kNoId;
 };
 
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's

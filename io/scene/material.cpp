@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "core/math.h"
+#include "io/mesh/reading.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
+#include "render/geometry.h"
 
 namespace oktett {
 namespace {
@@ -306,6 +308,24 @@ void warn_of_energy(Scene& scene) {
                                                  "receives, so paths grow brighter with each bounce",
                                                  albedo)});
   }
+}
+
+void warn_of_insides(Scene& scene) {
+  const auto warn_of = [&](const Object& object) {
+    const auto* const shape = std::get_if<MeshShape>(&object.shape);
+    if (shape == nullptr || object.material != kNoId) return;
+    const auto attenuates = [&](std::uint32_t m) {
+      return m < scene.materials.size() && scene.materials[m].interior != kNoId;
+    };
+    const auto found = std::ranges::find_if(shape->slot_materials, attenuates);
+    if (found == shape->slot_materials.end() || has_inside(object, scene)) return;
+    scene.warnings.push_back(
+        {object.where, "material " + quote_name(scene.materials[*found].name) +
+                           " attenuates light, but object " + quote_name(object.name) +
+                           " is not closed where light enters it; nothing is attenuated"});
+  };
+  for (const Prototype& prototype : scene.prototypes) std::ranges::for_each(prototype.objects, warn_of);
+  std::ranges::for_each(scene.objects, warn_of);
 }
 
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node) {

@@ -80,6 +80,9 @@ std::vector<MotionKey> read_motion(SceneLoad& load, const YamlNode& node);
 /// receive, if the scene is path traced. Called when all else is read.
 void warn_of_energy(Scene& scene);
 
+/// Adds warnings of objects whose materials by slots attenuate light inside, but have no inside.
+void warn_of_insides(Scene& scene);
+
 /// Reads a scene file with all that it includes. Throws Error; where errors are gathered, keeps them in
 /// `load.errors`.
 void read_scene_file(const std::string& path, SceneLoad& load);

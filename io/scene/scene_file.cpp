@@ -293,6 +293,7 @@ Scene scene_from_file(const std::string& path, const GltfOptions& options, FileS
         static_cast<std::uint32_t>(std::clamp(std::round(scene.film.height * file.aspect), 1.0, 4096.0));
   add_file_scene(path, options, std::move(file), scene);
   move_near(scene);
+  warn_of_insides(scene);
   return scene;
 }
 
@@ -313,6 +314,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   move_near(load.scene);
   warn_of_energy(load.scene);
   warn_of_attributes(load.scene);
+  warn_of_insides(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 
@@ -354,8 +356,7 @@ static Vec3d up_of(const std::string& path, const TriangleMesh& mesh) {
 
 Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   expect_readable(path);
-  if (!is_gltf_file(path) && gltf.is_for_gltf())
-    throw Error(Location{path}, "a time and variants are for glTF files");
+  check_gltf_options(path, gltf);
   Scene scene;
   scene.source = path;
   MeshLibrary meshes;
@@ -397,6 +398,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   const bool smooth = !is_gltf_file(path) || !entry.mesh->normals.empty();
   if (has_triangles) add({entry.mesh, entry.slot_materials, smooth});
   for (MeshShape& each : strokes) add(std::move(each));
+  warn_of_insides(scene);
   return scene;
 }
 

@@ -488,6 +488,30 @@ TEST(GltfScene, GlassAbsorbsWhatTheVolumeSays) {
   EXPECT_EQ(with_material(files, "{\"extensions\":{" + volume + "}}").materials.at(0).interior, kNoId);
 }
 
+TEST(GltfScene, GlassThatIsOpenAbsorbsNothingAndIsTold) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  out.array(std::vector<std::uint16_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}, kUint16, "SCALAR", 1);
+  out.array(std::vector<std::uint16_t>{0, 2, 1, 0, 1, 3}, kUint16, "SCALAR", 1);
+  const auto warnings = [&](int indices) {
+    const std::string glass =
+        "{\"name\":\"wine\",\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
+        "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+        "\"attenuationColor\":[0.5,1,0.25]}}}";
+    const std::string path = files.files.write(
+        "a.glb", out.glb("\"materials\":[" + glass + ",{}]," +
+                         one_node("{\"attributes\":{\"POSITION\":0},\"material\":0,\"indices\":" +
+                                  std::to_string(indices) +
+                                  "},{\"attributes\":{\"POSITION\":0},\"material\":1,\"indices\":2}")));
+    return files.files.as_text(scene_from_mesh(path).warnings);
+  };
+  EXPECT_EQ(warnings(1), std::vector<std::string>{});
+  EXPECT_EQ(warnings(2), (std::vector<std::string>{
+                             "a.glb: warning: material 'wine' attenuates light, but object 'a' is not closed "
+                             "where light enters it; nothing is attenuated"}));
+}
+
 TEST(GltfScene, SpecularAndGlossBecomeMetalOrPlastic) {
   const GltfFiles files;
   const auto read = [&](const std::string& gloss) {
@@ -552,8 +576,8 @@ TEST(GltfScene, ReflectionsHaveColourAndWeight) {
   EXPECT_TRUE(read(glass + ",\"KHR_materials_specular\":{\"specularFactor\":1}").warnings.empty());
   EXPECT_EQ(
       files.files.as_text(read(glass + ",\"KHR_materials_specular\":{\"specularFactor\":0.5}").warnings),
-      (std::vector<std::string>{"a.glb: warning: material '': what its glass reflects is what its index of "
-                                "refraction says alone"}));
+      (std::vector<std::string>{"a.glb: warning: material '': its glass reflects as its index of refraction "
+                                "says; KHR_materials_specular does not change that"}));
 }
 
 TEST(GltfScene, VariantsChooseMaterials) {

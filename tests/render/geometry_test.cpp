@@ -50,6 +50,43 @@ TEST(Geometry, MaterialsComeFromTheObjectElseTheSlotElseTheDefault) {
   EXPECT_EQ(with({}, 77).left, neutral);
 }
 
+/// A tetrahedron in slot 0, of which one face may be missing, and a triangle in slot 1.
+std::shared_ptr<TriangleMesh> glass_with_label(bool whole) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const Vec3f& p : {Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}})
+    mesh->positions.push_back(p);
+  for (const std::uint32_t i : {0u, 2u, 1u, 0u, 1u, 3u, 1u, 2u, 3u, 0u, 3u, 2u, 0u, 1u, 2u})
+    mesh->indices.push_back(i);
+  for (const std::uint16_t slot : {0, 0, 0, whole ? 0 : 1, 1}) mesh->material_slots.push_back(slot);
+  return mesh;
+}
+
+// A label on a glass opens the mesh, but not the glass.
+TEST(Geometry, GlassBesideOtherFacesHasAnInsideIfItIsClosedByItself) {
+  Scene scene = bare_scene(17);
+  scene.integrator.kind = IntegratorKind::path;
+  Material glass = diffuse({1, 1, 1});
+  glass.principled.emplace().parameters.transmission = 1;
+  glass.interior = 0;
+  scene.media.emplace_back().absorption = {1, 1, 1};
+  add_material(scene, glass), add_material(scene, diffuse({1, 0, 0}));
+  const auto is_tracked = [&](bool whole, std::vector<std::uint32_t> slots, std::uint32_t material) {
+    scene.objects.clear();
+    add_object(scene, MeshShape{glass_with_label(whole), std::move(slots), true, TriangleTest::watertight},
+               material);
+    EXPECT_FALSE(is_solid(scene.objects[0].shape, scene.prototypes));
+    const World world = build_world(scene, {});
+    EXPECT_EQ(world.has_enclosing_solids, has_inside(scene.objects[0], scene));
+    return world.objects[0].solid == 0;
+  };
+  EXPECT_TRUE(is_tracked(true, {0, 1}, kNoId));
+  EXPECT_FALSE(is_tracked(false, {0, 1}, kNoId));
+  EXPECT_FALSE(is_tracked(true, {0, 0}, kNoId));
+  EXPECT_FALSE(is_tracked(true, {1, 1}, kNoId));
+  EXPECT_TRUE(is_tracked(true, {0}, kNoId));
+  EXPECT_FALSE(is_tracked(true, {0, 1}, 0));
+}
+
 TEST(Geometry, InstancesShowTheirOwnMaterialElseThatInside) {
   Scene scene = bare_scene(17);
   const Color red{1, 0, 0}, blue{0, 0, 1};
