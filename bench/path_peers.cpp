@@ -15,6 +15,7 @@
 #include "bench/path_scenes.h"
 #include "bench/peer_timing.h"
 #include "bench/program.h"
+#include "core/color.h"
 #include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/text/file_content.h"

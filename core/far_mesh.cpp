@@ -15,10 +15,8 @@ std::optional<Vec3d> far_centre(const WideBox& box, double rounding, bool exact)
 template <class T>
 static std::optional<Vec3d> centre_of(std::span<const Vec3<T>> positions, double rounding, bool exact) {
   if (positions.size() < 3) return std::nullopt;
-  // A few tell of nearly all meshes that they are not far: the extent of all is no less.
-  WideBox some;
-  for (std::size_t i = 0; i < 16; ++i) some.grow(Vec3d(positions[i * (positions.size() - 1) / 15]));
-  if (surely_near(some) && some.extent() > 0) return std::nullopt;
+  if (const WideBox some = box_of_some(positions); surely_near(some) && some.extent() > 0)
+    return std::nullopt;
   WideBox all;
   for (const Vec3<T>& p : positions) all.grow(Vec3d(p));
   return far_centre(all, rounding, exact);

@@ -37,6 +37,19 @@ inline constexpr double kFarExtents = 128;
 /// Whether places that this box holds are near the origin, whatever other places are beside them.
 inline bool surely_near(const WideBox& some) { return some.distance() <= some.extent() * (kFarExtents - 1); }
 
+/// Whether what this box holds lies far from the origin.
+inline bool is_far(const WideBox& box) { return box.distance() > box.extent() * kFarExtents; }
+
+/// The box of a few of the positions. Of nearly all meshes these tell that they are not far: the extent of
+/// all is no less.
+template <class Positions>
+WideBox box_of_some(const Positions& positions) {
+  WideBox some;
+  for (std::size_t i = 0; i < 16 && !positions.empty(); ++i)
+    some.grow(Vec3d(positions[i * (positions.size() - 1) / 15]));
+  return some;
+}
+
 /// A centre to take off places, all in `box`, that lie far from the origin; nothing for others. It is a
 /// multiple of a power of two that is at least the extent, so the differences are floats if the places are.
 /// Each place may be off by `rounding` of its distance. `exact`: nothing is taken off along axes that are not

@@ -18,9 +18,6 @@ namespace oktett {
 /// without alpha has 1 there.
 enum class ImageChannel : std::uint8_t { red, green, blue, alpha, luminance };
 
-/// The luminance of a colour with Rec.709's primaries.
-inline float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-
 /// How the colours of an image are encoded: as its file says, or whatever it says as sRGB or linear.
 enum class TextureColors : std::uint8_t { of_file, srgb, linear };
 

@@ -41,11 +41,9 @@ class ObjectBoxes {
   void add_shape(const MeshShape& shape, const Affine& map, WideBox& box) const {
     if (shape.mesh == nullptr || shape.mesh->positions.empty()) return;
     const Column<Vec3f>& positions = shape.mesh->positions;
+    if (some_) return add_box(box_of_some(positions), map, box);
     WideBox own;
-    if (some_)
-      for (std::size_t i = 0; i < 16; ++i) own.grow(Vec3d(positions[i * (positions.size() - 1) / 15]));
-    else
-      for (const Vec3f& p : positions) own.grow(Vec3d(p));
+    for (const Vec3f& p : positions) own.grow(Vec3d(p));
     add_box(own, map, box);
   }
   void add_shape(const CsgShape& shape, const Affine& map, WideBox& box) {
@@ -81,8 +79,6 @@ WideBox box_of(const Object& object, ObjectBoxes& boxes) {
   boxes.add(object, {}, box);
   return box;
 }
-
-bool is_far(const WideBox& box) { return box.distance() > box.extent() * kFarExtents; }
 
 /// The centre of all objects and of the camera, if one is given, if they lie far.
 std::optional<Vec3d> far_centre_of(const Scene& scene) {

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "accel/accel.h"
+#include "core/color.h"
 #include "core/math.h"
 #include "core/mesh_geometry.h"
 #include "render/bsdf/metals.h"

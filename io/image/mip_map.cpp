@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/color.h"
+
 namespace oktett {
 
 /// Two neighbours along an axis, and how far a place is on the way from the first to the second.

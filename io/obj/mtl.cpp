@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/color.h"
 #include "core/error.h"
 #include "io/mesh/reading.h"
 #include "io/obj/mtl_texture.h"

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/color.h"
 #include "io/image/color.h"
 #include "io/mesh/reading.h"
 #include "io/obj/colors.h"

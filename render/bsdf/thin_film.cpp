@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/color.h"
 #include "core/math.h"
 
 namespace oktett {
@@ -42,9 +43,7 @@ ChannelWeights channel_weights() {
     const double wave = kFirstWave + i * kWaveStep;
     // Equal steps of wavelength are steps of wavenumber in proportion to its square.
     const Vec3d xyz = standard_observer(1000 / wave) * (1 / (wave * wave));
-    const Vec3d rgb{3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-                    -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-                    0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z};
+    const Vec3d rgb = rec709_of(xyz);
     weights[static_cast<std::size_t>(i)] = rgb;
     sum += rgb;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/color.h"
 #include "core/math.h"
 
 namespace oktett {
@@ -34,11 +35,8 @@ static double angle_between(const Vec3d& a, const Vec3d& b) {
 }
 
 static Color rec709(double luminance, double x, double y) {
-  const double big_x = luminance * x / y, big_z = luminance * (1 - x - y) / y;
-  const Vec3d c{3.2404542 * big_x - 1.5371385 * luminance - 0.4985314 * big_z,
-                -0.9692660 * big_x + 1.8760108 * luminance + 0.0415560 * big_z,
-                0.0556434 * big_x - 0.2040259 * luminance + 1.0572252 * big_z};
-  return Color(max(c, Vec3d{}));
+  const Vec3d xyz{luminance * x / y, luminance, luminance * (1 - x - y) / y};
+  return Color(max(rec709_of(xyz), Vec3d{}));
 }
 
 Sky::Sky(const SkyParameters& parameters)

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/material.h"
+#include "core/color.h"
 #include "tests/render/light_checks.h"
 
 namespace oktett::light_sky_test {
