@@ -19,7 +19,6 @@
 #include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/text/file_content.h"
-#include "render/material.h"
 #include "render/picture/render.h"
 
 namespace fs = std::filesystem;
