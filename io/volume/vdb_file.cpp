@@ -1,5 +1,7 @@
 #include "io/volume/vdb_file.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "io/library/loaded_library.h"
@@ -35,6 +37,11 @@ PlacedDensities read_vdb(const std::string& path, const std::string& name, std::
         {Location{path}, read.negative == 1
                              ? std::string("a density is below 0 and counts as 0")
                              : std::to_string(read.negative) + " densities are below 0 and count as 0"});
+  if (read.background > 0)
+    warnings.push_back(
+        {Location{path}, fmt::format("the grid states a density of {:g} for all places without "
+                                     "a voxel; beyond its voxels it counts as 0",
+                                     read.background)});
   return {
       std::make_shared<const DensityGrid>(read.size[0], read.size[1], read.size[2], std::move(read.values)),
       read.place};

@@ -26,10 +26,11 @@ struct PlacedDensities {
 };
 
 /// Reads the grid of floats `name` of an OpenVDB file; for an empty name the one called `density`, else the
-/// only one. The box of the active voxels is read, and one voxel more on each side, so that between all of
-/// them the densities are those that OpenVDB's BoxSampler gives. The place of a grid may be singular. Throws
-/// Error of kind io if the file cannot be read, and Error for what is no grid of densities or too large; adds
-/// a warning for densities below 0, which count as 0.
+/// only one that is no level set. The box of the active voxels is read, and one voxel more on each side, so
+/// that between all of them the densities are those that OpenVDB's BoxSampler gives. The place of a grid may
+/// be singular. Throws Error of kind io if the file cannot be read, and Error for what is no grid of
+/// densities or too large; adds warnings for densities below 0 and for those beyond the box, which count as
+/// 0.
 PlacedDensities read_vdb(const std::string& path, const std::string& name, std::vector<Warning>& warnings);
 
 // ---- The shared library that knows OpenVDB, liboktett_volumes. It takes 50 ms to start, so it is loaded
@@ -41,6 +42,7 @@ struct VdbDensities {
   Column<float> values;      ///< x fastest, then y, then z
   Affine place;              ///< maps the unit cube, which they fill, to the space of the file
   std::size_t negative = 0;  ///< how many values are below 0
+  float background = 0;      ///< what the file states for all places without a voxel
 };
 
 class VolumeLibrary {

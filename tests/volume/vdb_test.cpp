@@ -159,6 +159,71 @@ TEST_F(Vdb, TheGridIsTheOneOfThatNameOrDensityOrTheOnlyOne) {
   expect_error("expected a grid of floats; the file has 'velocity' (vec3s)");
 }
 
+TEST_F(Vdb, ErrorsNameTheGridsThatTheFileHas) {
+  const FloatGrid::Ptr surface = openvdb::tools::createLevelSetSphere<FloatGrid>(1, {0, 0, 0}, 0.2);
+  surface->setName("surface");
+  const FloatGrid::Ptr smoke = named("smoke");
+  smoke->tree().setValueOn(Coord(0), 2);
+  const openvdb::Int32Grid::Ptr flags = openvdb::Int32Grid::create();
+  flags->setName("flags");
+  write({surface, smoke, flags});
+  EXPECT_EQ(density_at(medium(), {}), 2);  // the only one that can be densities
+  const std::string has = "; the file has 'flags' (int32), 'smoke' (float), 'surface' (float, level set)";
+  expect_error("is a level set (distances from a surface); expected densities" + has, ", grid_name: surface");
+  expect_error("the grid 'flags' is of type int32; expected float" + has, ", grid_name: flags");
+  expect_error("no grid 'flame'" + has, ", grid_name: flame");
+  smoke->setTransform(openvdb::math::Transform::createFrustumTransform({{0, 0, 0}, {9, 9, 9}}, 0.5, 10, 1));
+  write({surface, smoke, flags});
+  expect_error("the grid 'smoke' is a frustum; expected a grid with an affine transform" + has);
+}
+
+TEST_F(Vdb, GridsOfOneNameHaveNumbers) {
+  const FloatGrid::Ptr first = named("density"), second = named("density");
+  first->tree().setValueOn(Coord(0), 2), second->tree().setValueOn(Coord(0), 3);
+  write({first, second});
+  EXPECT_EQ(density_at(medium(", grid_name: 'density[0]'"), {}), 2);
+  EXPECT_EQ(density_at(medium(", grid_name: 'density[1]'"), {}), 3);
+  for (const std::string more : {"", ", grid_name: density"})
+    expect_error(
+        "several grids are called 'density'; expected 'grid_name' with a number: the file has 'density[0]' "
+        "(float), 'density[1]' (float)",
+        more);
+}
+
+// Blender 3.4 writes a fog of halves from index 0 on, a velocity on faces and a shadow of -1 everywhere; the
+// grids of its noise have names of their own.
+TEST_F(Vdb, SmokeOfBlenderStandsInItsDomainByTheTransformsOfTheDocument) {
+  const double cell = 4.0 / 24;  // the domain is 2 x 3 x 4, with 24 cells along z
+  const FloatGrid::Ptr smoke = named("density", cell), shadow = named("shadow", cell);
+  for (const FloatGrid::Ptr& grid : {smoke, shadow}) {
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->setSaveFloatAsHalf(true);
+  }
+  smoke->tree().setValueOn(Coord(3, 16, 20), 0.5f), smoke->tree().setValueOn(Coord(11, 17, 23), 0.25f);
+  shadow->denseFill(CoordBBox(Coord(0), Coord(11, 17, 23)), -1);
+  const openvdb::Vec3SGrid::Ptr velocity = openvdb::Vec3SGrid::create();
+  velocity->setName("velocity");
+  velocity->setGridClass(openvdb::GRID_STAGGERED);
+  write({smoke, shadow, velocity});
+  const Medium placed = medium(
+      ", transform: [{translate: [-1, -1.5, -2]}, {translate: [0.0833333333333333, 0.0833333333333333, "
+      "0.0833333333333333]}, {rotate: [0, 0, 90]}, {translate: [3, -2, 1]}]");
+  // The middle of a cell in the domain that is turned by 90 degrees about z and moved.
+  const auto middle = [&](int i, int j, int k) {
+    const Vec3d local{-1 + (i + 0.5) * cell, -1.5 + (j + 0.5) * cell, -2 + (k + 0.5) * cell};
+    return Vec3d{3 - local.y, -2 + local.x, 1 + local.z};
+  };
+  EXPECT_NEAR(density_at(placed, middle(3, 16, 20)), 0.5, 1e-9);
+  EXPECT_NEAR(density_at(placed, middle(11, 17, 23)), 0.25, 1e-9);
+  EXPECT_NEAR(density_at(placed, middle(11, 17, 22)), 0, 1e-9);
+  EXPECT_EQ(files.warnings_v1("media: {a: {grid: a.vdb, grid_name: shadow}}\n"),
+            "a.vdb: warning: 5184 densities are below 0 and count as 0\n");
+  smoke->setName("density_noise"), shadow->setName("flame_noise");
+  write({smoke, shadow});
+  EXPECT_NEAR(density_at(medium(", grid_name: density_noise"), {0.5, 16 * cell, 20 * cell}), 0.5, 1e-9);
+  expect_error("the file has 'density_noise' (float), 'flame_noise' (float)");
+}
+
 TEST_F(Vdb, TheTransformOfTheMediumMovesTheGrid) {
   const FloatGrid::Ptr grid = named("density", 0.5);
   grid->tree().setValueOn(Coord(2, 0, 0), 1);
@@ -186,6 +251,25 @@ TEST_F(Vdb, DensitiesBelowZeroAreZeroWithAWarning) {
   const Scene loaded = files.load_v1(scene);
   EXPECT_EQ(density_at(loaded.media[0], {1, 0, 0}), 0);
   EXPECT_EQ(density_at(loaded.media[0], {0.25, 0, 0}), 0.75);
+}
+
+TEST_F(Vdb, DensitiesOfAllSpaceEndAroundTheVoxelsWithAWarning) {
+  const std::string scene = "media: {a: {grid: a.vdb}}\n";
+  const std::string warning =
+      "a.vdb: warning: the grid states a density of 0.25 for all places without a voxel; beyond its voxels "
+      "it "
+      "counts as 0\n";
+  const FloatGrid::Ptr grid = FloatGrid::create(0.25f);
+  write({grid});
+  EXPECT_EQ(files.warnings_v1(scene), warning);
+  EXPECT_EQ(files.load_v1(scene).media[0].grid->most(), 0);
+  grid->tree().setValueOn(Coord(0), 1), grid->tree().setValueOn(Coord(2, 0, 0), 1);
+  write({grid});
+  EXPECT_EQ(files.warnings_v1(scene), warning);
+  const Scene loaded = files.load_v1(scene);
+  EXPECT_EQ(density_at(loaded.media[0], {1, 0, 0}), 0.25);
+  EXPECT_EQ(density_at(loaded.media[0], {2.5, 0, 0}), 0.625);
+  EXPECT_EQ(density_at(loaded.media[0], {5, 0, 0}), 0);
 }
 
 TEST_F(Vdb, WhatIsNoDensityIsAnError) {

@@ -9,6 +9,7 @@
 #include <openvdb/tools/Dense.h>
 #pragma GCC visibility pop
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -38,19 +39,21 @@ class VdbReading {
  public:
   VdbReading(const std::string& path, const std::string& opened) : path_(path), file_(opened) {
     file_.open(/*delayLoad=*/false);
+    for (auto it = file_.beginName(); it != file_.endName(); ++it) names_.push_back(it.gridName());
   }
 
   VdbDensities run(const std::string& wanted) {
     const std::string name = choose(wanted);
     const openvdb::GridBase::Ptr grid = file_.readGrid(name);
-    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
-      fail("the grid " + quoted(name) + " is a level set (distances from a surface); expected densities");
+    if (is_level_set(*grid))
+      fail("the grid " + quoted(name) + " is a level set (distances from a surface); expected densities" +
+           others());
     if (!grid->transform().isLinear())
-      fail("the grid " + quoted(name) + " is a frustum; expected a grid with an affine transform");
+      fail("the grid " + quoted(name) + " is a frustum; expected a grid with an affine transform" + others());
     if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)) return dense(name, *floats);
     if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid))
       return dense(name, *doubles);
-    fail("the grid " + quoted(name) + " is of type " + grid->valueType() + "; expected float");
+    fail("the grid " + quoted(name) + " is of type " + grid->valueType() + "; expected float" + others());
   }
 
  private:
@@ -60,33 +63,51 @@ class VdbReading {
     return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
   }
 
-  /// The name of the grid to read. Grids of types that are not known here are passed over.
-  std::string choose(const std::string& wanted) {
-    std::vector<std::string> scalars;
+  static bool is_level_set(const openvdb::GridBase& grid) {
+    return grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+  }
+
+  /// The grids of the file for a message: "the file has 'density' (float), 'surface' (float, level set)".
+  std::string has() {
     std::string all;
-    for (auto it = file_.beginName(); it != file_.endName(); ++it) {
-      const std::string name = it.gridName();
-      if (name == (wanted.empty() ? "density" : wanted)) return name;
-      std::string type = "of an unknown type";
-      try {
-        const openvdb::GridBase::ConstPtr grid = file_.readGridMetadata(name);
-        type = grid->valueType();
-        if (is_scalar(*grid)) scalars.push_back(name);
-      } catch (const openvdb::Exception&) {}
-      if (all.size() < 400) all += (all.empty() ? "" : ", ") + quoted(name) + " (" + type + ")";
+    for (const std::string& name : names_) {
+      const openvdb::GridBase::ConstPtr grid = file_.readGridMetadata(name);
+      if (all.size() < 400)
+        all += (all.empty() ? "" : ", ") + quoted(name) + " (" + grid->valueType() +
+               (is_level_set(*grid) ? ", level set)" : ")");
     }
-    if (wanted.empty() && scalars.size() == 1) return scalars[0];
-    const std::string has = all.empty() ? "the file has none" : "the file has " + all;
-    if (wanted.empty() && !scalars.empty())
-      fail("no grid is called 'density', and several hold floats; expected 'grid_name': " + has);
-    fail(wanted.empty() ? "expected a grid of floats; " + has : "no grid " + quoted(wanted) + "; " + has);
+    return all.empty() ? "the file has none" : "the file has " + all;
+  }
+
+  /// The same after what is wrong with one of several grids.
+  std::string others() { return names_.size() > 1 ? "; " + has() : std::string(); }
+
+  /// The name of the grid to read.
+  std::string choose(const std::string& wanted) {
+    const std::string first = wanted.empty() ? "density" : wanted;
+    if (std::find(names_.begin(), names_.end(), first) != names_.end()) return first;
+    // OpenVDB numbers grids that have one name.
+    if (std::find(names_.begin(), names_.end(), first + "[0]") != names_.end())
+      fail("several grids are called " + quoted(first) + "; expected 'grid_name' with a number: " + has());
+    if (!wanted.empty()) fail("no grid " + quoted(wanted) + "; " + has());
+    std::vector<std::string> densities, level_sets;
+    for (const std::string& name : names_) {
+      const openvdb::GridBase::ConstPtr grid = file_.readGridMetadata(name);
+      if (is_scalar(*grid)) (is_level_set(*grid) ? level_sets : densities).push_back(name);
+    }
+    if (densities.empty()) densities.swap(level_sets);
+    if (densities.empty()) fail("expected a grid of floats; " + has());
+    if (densities.size() > 1)
+      fail("no grid is called 'density', and several hold floats; expected 'grid_name': " + has());
+    return densities[0];
   }
 
   template <class Grid>
   VdbDensities dense(const std::string& name, const Grid& grid) const {
     VdbDensities out;
     openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    if (box.empty()) box = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(0));
+    const bool is_empty = box.empty();
+    if (is_empty) box = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(0));
     std::uint64_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const std::int64_t first = box.min()[axis], last = box.max()[axis];
@@ -103,8 +124,12 @@ class VdbReading {
     box.expand(1);
     out.values.resize_uninitialized(count);
     openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> values(box, out.values.data());
-    openvdb::tools::copyToDense(grid, values);
+    if (is_empty)
+      values.fill(0);
+    else
+      openvdb::tools::copyToDense(grid, values);
     check(name, out);
+    out.background = static_cast<float>(grid.background());
     out.place = place_of(grid.transform(), box, out.size);
     return out;
   }
@@ -134,6 +159,7 @@ class VdbReading {
 
   const std::string& path_;
   openvdb::io::File file_;
+  std::vector<std::string> names_;  ///< of its grids, each different
 };
 
 class OpenVdbLibrary final : public VolumeLibrary {
