@@ -91,6 +91,15 @@ void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray
 /// mesh; nothing if what was hit is no triangle.
 std::optional<std::array<Vec3f, 3>> triangle_corners(const Accel& accel, const Hit& hit);
 
+/// A triangle whose shading normals are interpolated: its corners in the order of the mesh, and the unit
+/// normals there.
+struct SmoothTriangle {
+  Vec3d corner[3], normal[3];
+};
+/// The triangle at a hit, which is valid, in the space of `accel`; nothing if what was hit shows no
+/// interpolated normals.
+std::optional<SmoothTriangle> smooth_triangle(const Accel& accel, const Hit& hit);
+
 // ---- Walks over everything that a structure shows, through all chains of instances.
 
 /// A geometry where one chain of instances shows it. Primitive k of it is met by hits with this `instance`

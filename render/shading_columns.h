@@ -9,6 +9,8 @@
 
 namespace oktett {
 
+class RaisedPoints;
+
 /// A light in the precision of shading.
 struct LightSource {
   Vec3f place;  ///< position, or the unit vector towards a directional light
@@ -65,6 +67,8 @@ struct ShadingColumns {
   std::int32_t exponent[kMost];
   /// Bit k: the material of hit k `varies`, or `sends_rays`. Lanes after the last hit repeat its bits.
   std::uint64_t varying, sending;
+
+  RaisedPoints* raised = nullptr;  ///< of the hits
 };
 
 /// Rays that change a pixel by less than this are not traced.

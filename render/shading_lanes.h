@@ -72,13 +72,21 @@ struct PhongCosines {
   F highlight;  ///< between the mirrored light and the viewer
 };
 
-/// The light is in the unit direction `l`; the viewer's ray travels along `direction`. NaN stays NaN.
+/// Those of the shading normal alone. The light is in the unit direction `l`; the viewer's ray travels along
+/// `direction`. NaN stays NaN.
+template <class F>
+OKTETT_INLINE PhongCosines<F> smooth_cosines(const Vec3<F>& direction, const Vec3<F>& ns, const Vec3<F>& l) {
+  const F cosine = dot_lanes(ns, l);
+  return {cosine, dot_lanes(l, direction) - F(2.0f) * cosine * dot_lanes(ns, direction)};
+}
+
+/// The same, but for light behind the true surface.
 template <class F>
 OKTETT_INLINE PhongCosines<F> phong_cosines(const Vec3<F>& direction, const Vec3<F>& ng, const Vec3<F>& ns,
                                             const Vec3<F>& l) {
-  const F zero(0.0f), cosine = dot_lanes(ns, l);
-  return {select(dot_lanes(ng, l) <= zero, zero, cosine),
-          dot_lanes(l, direction) - F(2.0f) * cosine * dot_lanes(ns, direction)};
+  const F zero(0.0f);
+  const PhongCosines<F> at = smooth_cosines(direction, ns, l);
+  return {select(dot_lanes(ng, l) <= zero, zero, at.cosine), at.highlight};
 }
 
 }  // namespace oktett

@@ -163,6 +163,27 @@ std::optional<std::array<Vec3f, 3>> triangle_corners(const Accel& accel, const H
   return corners;
 }
 
+std::optional<SmoothTriangle> smooth_triangle(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const HitNames names = identify_in(place, hit);
+  if (names.kind != Kind::triangle) return std::nullopt;
+  const Geometry& g = place.accel->geometries[names.geometry];
+  if (!mesh_frame(g, place.accel->frames[names.geometry]).smooth) return std::nullopt;
+  const TriangleMesh& mesh = *std::get<MeshGeometry>(g.shape).mesh;
+  const Affine to_world = place.moved ? place.to_world * g.transform : g.transform;
+  const Affine inverse = to_world.inverse();
+  Vec3f normals[3];
+  corner_normals(mesh, names.primitive, normals);
+  SmoothTriangle triangle;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d n = inverse.normal_by_inverse(Vec3d(normals[k]));
+    if (!(length(n) > 0)) return std::nullopt;
+    triangle.corner[k] = to_world.point(Vec3d(corner_position(mesh, names.primitive, k)));
+    triangle.normal[k] = normalize(n);
+  }
+  return triangle;
+}
+
 Vec3f offset_origin(const SurfaceInteraction& s, const Vec3f& direction) {
   Vec3f origin;
   offset_origin(s, direction, origin);

@@ -47,6 +47,9 @@ struct BsdfSamples {
   FloatsOf<D> pdf;  ///< 0: a delta lobe
   M found;
   M transmitted;
+  /// The lanes, none of them `found`, whose directions lead above the shading normal's horizon, but behind
+  /// the true surface. Set by ShadingFrame::to_world.
+  M behind;
 };
 
 template <class D>
@@ -147,6 +150,7 @@ class ShadingFrame {
     const M delta = s.pdf == zero, folded = s.found & delta & ~agree;
     if (any(folded))
       s.direction = select_lanes(folded, unit_lanes(s.direction - ng_ * (F(2.0f) * side)), s.direction);
+    s.behind = s.found & ~(agree | delta | s.transmitted) & (dot_lanes(z_, s.direction) > zero);
     s.found = s.found & (agree | delta);
   }
 

@@ -8,6 +8,7 @@
 #include "render/bsdf/optics.h"
 #include "render/bsdf/phong_lobes.h"
 #include "render/context.h"
+#include "render/raised_points.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/shading_columns.h"
 #include "render/shading_lanes.h"
@@ -178,38 +179,131 @@ OKTETT_INLINE F profile_values(const AimedProfile& profile, const Vec3<F>& l) {
   return F::load(value);
 }
 
+/// The light of a source at points that see it.
+template <class F>
+struct SourceLight {
+  Vec3<F> l;       ///< unit vector towards it
+  Vec3<F> target;  ///< where shadow rays end; towards a directional light, their direction
+  Vec3<F> color;
+};
+
+template <class F>
+OKTETT_INLINE SourceLight<F> source_light(const LightSource& light, const Vec3<F>& position) {
+  const Vec3<F> place = broadcast<F>(light.place);
+  SourceLight<F> s{place, place, broadcast<F>(light.color)};
+  if (light.directional) return s;
+  const auto square = turn_to_light(light.place, position, s.l);
+  if (light.falloff) s.color = scale_lanes(s.color, falloff(square));
+  if (light.spot) {
+    const F cosine = -dot_lanes(s.l, broadcast<F>(light.axis));
+    s.color = scale_lanes(s.color, spot_share(cosine, light.cos_inner, light.cos_outer));
+  }
+  if (light.profile.profile != nullptr) s.color = scale_lanes(s.color, profile_values(light.profile, s.l));
+  if (light.glows) s.color = scale_lanes(s.color, glow(s.l, light, s.target));
+  return s;
+}
+
+/// Replaces `position` by the raised points of hits i, i + 1, ... in `lanes`. Returns the lanes that have
+/// one.
+template <class F>
+OKTETT_NOINLINE unsigned raise_positions(const ShadingColumns& c, std::size_t i, unsigned lanes,
+                                         Vec3<F>& position) {
+  float x[F::kWidth], y[F::kWidth], z[F::kWidth];
+  position.x.store(x), position.y.store(y), position.z.store(z);
+  unsigned raised = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    const Vec3f* const point = c.raised->point(i + static_cast<unsigned>(k));
+    if (point == nullptr) continue;
+    x[k] = point->x, y[k] = point->y, z[k] = point->z;
+    raised |= 1u << k;
+  }
+  position = {F::load(x), F::load(y), F::load(z)};
+  return raised;
+}
+
+/// Those of `lanes`, of hits i, i + 1, ... that have raised points, in which `l` leads above the curved
+/// surface.
+template <class F>
+OKTETT_NOINLINE unsigned lanes_above(const ShadingColumns& c, std::size_t i, unsigned lanes,
+                                     const Vec3<F>& l) {
+  float x[F::kWidth], y[F::kWidth], z[F::kWidth];
+  l.x.store(x), l.y.store(y), l.z.store(z);
+  unsigned above = 0;
+  for (unsigned left = lanes; left != 0; left &= left - 1) {
+    const int k = __builtin_ctz(left);
+    if (c.raised->leads_above(i + static_cast<unsigned>(k), {x[k], y[k], z[k]})) above |= 1u << k;
+  }
+  return above;
+}
+
+/// Where the light of a source arrives at hits.
+template <class F>
+struct LitHits {
+  SourceLight<F> light;
+  PhongCosines<F> at;
+  typename F::M moved;  ///< the hits that are moved to their raised points
+  Vec3<F> raised;       ///< these points
+};
+
+/// Moves hits i, i + 1, ... that the light meets from above the shading normal's horizon, but from behind the
+/// plane of the triangle, to their raised points.
+template <class F>
+OKTETT_INLINE void raise_hits(const LightSource& light, const ShadingColumns& c, std::size_t i,
+                              const Vec3<F>& position, LitHits<F>& hits) {
+  const F zero(0.0f);
+  const Vec3<F> ns = load_lanes<F>(c.ns, i), direction = load_lanes<F>(c.direction, i);
+  const auto behind = ~(zero < dot_lanes(load_lanes<F>(c.ng, i), hits.light.l)) &
+                      (zero < dot_lanes(ns, hits.light.l)) & (F::load(c.transparency + i) == zero);
+  unsigned lanes = bits(behind) & real_lanes<F>(c, i);
+  if (OKTETT_LIKELY(lanes == 0)) return;
+  Vec3<F> raised = position;
+  lanes = raise_positions(c, i, lanes, raised);
+  if (lanes == 0) return;
+  const SourceLight<F> seen = source_light(light, raised);
+  const auto moved = F::M::from_bits(lanes_above(c, i, lanes, seen.l));
+  const PhongCosines<F> at = smooth_cosines(direction, ns, seen.l);
+  hits.light = {select_lanes(moved, seen.l, hits.light.l),
+                select_lanes(moved, seen.target, hits.light.target),
+                select_lanes(moved, seen.color, hits.light.color)};
+  hits.at = {select(moved, at.cosine, hits.at.cosine), select(moved, at.highlight, hits.at.highlight)};
+  hits.moved = moved, hits.raised = raised;
+}
+
+/// The light of a source at hits i, i + 1, ... of the columns.
+template <class F>
+OKTETT_INLINE LitHits<F> lit_hits(const InteractionBlock& s, const LightSource& light,
+                                  const ShadingColumns& c, std::size_t i) {
+  const Vec3<F> position = load_lanes<F>(s.position, i);
+  LitHits<F> hits;
+  hits.light = source_light(light, position);
+  hits.at = phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i),
+                          hits.light.l);
+  hits.moved = F::M::from_bits(0);
+  raise_hits(light, c, i, position, hits);
+  return hits;
+}
+
 template <class A>
 void shadow_rays_code(const InteractionBlock& s, const LightSource& light, const ShadingColumns& c,
                       ShadowColumns& out) {
   using F = ShadingLanes<A>;
   const F zero(0.0f);
-  const Vec3<F> place = broadcast<F>(light.place), light_color = broadcast<F>(light.color);
   std::size_t end = out.size;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero))) continue;
-    const Vec3<F> position = load_lanes<F>(s.position, i);
-    Vec3<F> target = place, l = place, color = light_color;
-    if (!light.directional) {
-      const auto square = turn_to_light(light.place, position, l);
-      if (light.falloff) color = scale_lanes(color, falloff(square));
-      if (light.spot) {
-        const F cosine = -dot_lanes(l, broadcast<F>(light.axis));
-        color = scale_lanes(color, spot_share(cosine, light.cos_inner, light.cos_outer));
-      }
-      if (light.profile.profile != nullptr) color = scale_lanes(color, profile_values(light.profile, l));
-      if (light.glows) color = scale_lanes(color, glow(l, light, target));
-    }
-    const PhongCosines<F> at =
-        phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
-    unsigned lit = bits(~(at.cosine <= zero)) & real_lanes<F>(c, i);
+    const LitHits<F> hits = lit_hits<F>(s, light, c, i);
+    unsigned lit = bits(~(hits.at.cosine <= zero)) & real_lanes<F>(c, i);
     if (lit == 0) continue;
-    const Vec3<F> shine = phong_sums(at, c, i), throughput = load_lanes<F>(c.throughput, i);
+    const Vec3<F> shine = phong_sums(hits.at, c, i), throughput = load_lanes<F>(c.throughput, i);
+    const Vec3<F>& color = hits.light.color;
     const Vec3<F> arriving{throughput.x * shine.x * color.x, throughput.y * shine.y * color.y,
                            throughput.z * shine.z * color.z};
     lit &= ~bits((arriving.x == zero) & (arriving.y == zero) & (arriving.z == zero));
-    const Vec3<F> origin =
-        offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
-    const Vec3<F> direction = light.directional ? place : sub_lanes(target, origin);
+    Vec3<F> origin = offset_lanes(load_lanes<F>(s.position, i), load_lanes<F>(s.position_error, i),
+                                  load_lanes<F>(s.geometric_normal, i), hits.light.l);
+    if (any(hits.moved)) origin = select_lanes(hits.moved, hits.raised, origin);
+    const Vec3<F> direction = light.directional ? hits.light.target : sub_lanes(hits.light.target, origin);
     store_compact(lit, origin, out.origin, end), store_compact(lit, direction, out.direction, end);
     store_compact(lit, arriving, out.light, end);
     std::uint32_t* owner = out.owner + end;

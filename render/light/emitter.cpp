@@ -299,6 +299,16 @@ float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& 
   return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
 }
 
+Vec3d normal_at(const Emitter& emitter, const Vec3d& place) {
+  if (const auto* e = std::get_if<TriangleEmitter>(&emitter))
+    return cross(Vec3d(e->b) - Vec3d(e->a), Vec3d(e->c) - Vec3d(e->a));
+  if (const auto* e = std::get_if<RectangleEmitter>(&emitter))
+    return cross(Vec3d(e->edge_u), Vec3d(e->edge_v));
+  if (const auto* e = std::get_if<DiskEmitter>(&emitter)) return Vec3d(e->normal);
+  if (const auto* e = std::get_if<SphereEmitter>(&emitter)) return place - Vec3d(e->center);
+  return {};
+}
+
 std::optional<LightBounds> light_bounds(const Emitter& emitter) {
   const auto bounds = std::visit(
       [](const auto& e) -> std::optional<LightBounds> {

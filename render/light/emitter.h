@@ -127,6 +127,10 @@ std::optional<LightSample> sample_own_emitter(const Emitter& emitter, const Ligh
                                               const SquareSample& s);
 float own_emitter_pdf(const Emitter& emitter);
 
+/// A vector perpendicular to the surface of an emitter at a place on it, not normalised; zero for emitters
+/// that have no surface.
+Vec3d normal_at(const Emitter& emitter, const Vec3d& place);
+
 /// Radiance of an infinite emitter in the unit vector `direction` away from the point; black for emitters
 /// that have a place or are seen as points.
 Color infinite_radiance(const Emitter& emitter, const Vec3f& direction);

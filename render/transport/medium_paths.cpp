@@ -86,7 +86,7 @@ class MediumScattering {
       : direction_(only_lane(direction)), anisotropy_(anisotropy) {}
 
   Vec3<F> to_local(const Vec3<F>& l) const { return l; }
-  F::M may_scatter(const Vec3<F>&, const Vec3<F>&) const { return F::M::all_true(); }
+  F::M may_scatter(const Vec3<F>&, const Vec3<F>&, const F::M&) const { return F::M::all_true(); }
   BsdfValues<D> evaluate(const Vec3<F>& l) const {
     const F value(phase_value(direction_, only_lane(l), anisotropy_));
     return {{value, value, value}, value};

@@ -41,9 +41,10 @@ float emission_weight(const RenderContext& context, const Wavefront& wavefront, 
   if (pdf == 0 && !is_caustic(context, wavefront, ray)) return 1;
   const LightPoint& from = wavefront.paths.from[ray];
   if (pdf == 0) return emitter != kNoId && context.caustics->brings(emitter) ? 0.0f : 1.0f;
-  if (emitter == kNoId) return power_weight(pdf, 0);
-  return power_weight(pdf, context.sampled->set().pdf(from, emitter, wavefront.rays.rays[ray].direction,
-                                                      length(position - from.position)));
+  const float distance = length(position - from.position);
+  if (emitter == kNoId || distance < wavefront.paths.unsampled[ray]) return power_weight(pdf, 0);
+  return power_weight(
+      pdf, context.sampled->set().pdf(from, emitter, wavefront.rays.rays[ray].direction, distance));
 }
 
 /// Adds the light that photons bring to the hit of entry `ray`.
@@ -81,6 +82,7 @@ void begin_path_block(const RenderContext& context, Wavefront& wavefront, const 
 void choose_lights(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* entry,
                    std::size_t count, PathBlock& c) {
   if (c.asks_lights) sample_lights(context, entry, count, c);
+  if (c.asks_lights && c.raised != nullptr) raise_lights(context, entry, count, c);
   if (context.light_groups == nullptr) return;
   for (std::size_t i = 0; i < count; ++i)
     if (c.light_kind[entry[i]] != LightKind::none)
@@ -88,9 +90,10 @@ void choose_lights(const RenderContext& context, Wavefront& wavefront, const std
 }
 
 static PathOnward end_of(RayQueue& queue, PathColumns& paths, std::size_t more) {
-  PathOnward to{end_of(queue, more), nullptr, nullptr};
+  PathOnward to{end_of(queue, more), nullptr, nullptr, nullptr};
   paths.resize_uninitialized(queue.size());
   to.pdf = paths.pdf.data();
+  to.unsampled = paths.unsampled.data();
   to.from = paths.from.data();
   return to;
 }
@@ -108,8 +111,8 @@ void PathOutput::note_alone(const PathQueues& before, const PathBlock& c, std::s
   const std::uint32_t ray = c.ray[k];
   const bool sent = queues_.next.size > before.next.size;
   if (around != nullptr) {
-    const bool light_behind =
-        dot(InteractionBlock::get(c.ng, k), InteractionBlock::get(c.light_direction, k)) < 0;
+    const bool light_behind = !c.from[k].front_only && dot(InteractionBlock::get(c.ng, k),
+                                                           InteractionBlock::get(c.light_direction, k)) < 0;
     const DielectricStack& at_light = light_behind ? *behind : *around;
     if (queues_.delta.size > before.delta.size) wavefront_.shadows[0].dielectrics.push_back(at_light);
     if (queues_.area.size > before.area.size) wavefront_.shadows[kAreaQueue].dielectrics.push_back(at_light);
@@ -209,10 +212,10 @@ void pass_straight(const RenderContext& context, Wavefront& wavefront, std::size
   push_bounce(wavefront, wavefront.next, ray, hit.point, hit.point.direction, wavefront.rays.throughput[ray],
               Bounce::straight);
   const bool camera = wavefront.level == 0;
-  wavefront.next_paths.push_back(camera ? 0 : wavefront.paths.pdf[ray],
-                                 camera ? LightPoint{} : wavefront.paths.from[ray],
-                                 !camera && wavefront.paths.scattered[ray] != 0,
-                                 context.tracks_dielectrics ? &hit.boundary.behind : nullptr);
+  wavefront.next_paths.push_back(
+      camera ? 0 : wavefront.paths.pdf[ray], camera ? 0 : wavefront.paths.unsampled[ray],
+      camera ? LightPoint{} : wavefront.paths.from[ray], !camera && wavefront.paths.scattered[ray] != 0,
+      context.tracks_dielectrics ? &hit.boundary.behind : nullptr);
 }
 
 /// Fills `hit` and the normals of its entry. False if the ray passes straight on: through a hole, or where
@@ -245,6 +248,14 @@ bool meet_alone(const RenderContext& context, Wavefront& wavefront, const RayHis
   return true;
 }
 
+/// The normal by which lights are chosen for hit `k`. Rays leave an opaque smooth triangle wherever they lead
+/// above the curved surface, see RaisedPoints.
+Vec3f normal_for_lights(const InteractionBlock& found, const PathBlock& c, std::size_t k, bool transmits) {
+  const bool flat =
+      InteractionBlock::get(found.shading_normal, k) == InteractionBlock::get(found.geometric_normal, k);
+  return InteractionBlock::get(flat || transmits ? c.ng : c.ns, k);
+}
+
 }  // namespace
 
 void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
@@ -252,6 +263,8 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   PathBlock c;
   c.count = count;
   begin_path_block(context, wavefront, which, found, c);
+  RaisedPoints raised = raised_points(context, wavefront, which, found);
+  c.raised = &raised;
   const bool all_alone = context.one_by_one || context.tracks_dielectrics || context.caustics != nullptr;
   Shown shown[kMostHits];
   std::uint32_t asks[kMostHits];
@@ -293,7 +306,7 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     }
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
-    c.from[k] = {position, InteractionBlock::get(c.ng, k), !surface->transmits, emitter};
+    c.from[k] = {position, normal_for_lights(found, c, k, surface->transmits), !surface->transmits, emitter};
     if (!surface->only_delta) asks[asking++] = static_cast<std::uint32_t>(k);
     if (alone)
       wavefront.lone_hits.push_back(lone);

@@ -6,6 +6,7 @@
 #include "accel/interaction_block.h"
 #include "render/light/light_sample.h"
 #include "render/path_surface.h"
+#include "render/raised_points.h"
 #include "render/shading_columns.h"
 
 namespace oktett {
@@ -56,7 +57,10 @@ struct PathBlock {
   LightKind light_kind[kMost];
   std::uint32_t light_emitter[kMost];  ///< of the LightSet, where there is a sample
   float light_direction[3][kMost], light_distance[kMost], light_pdf[kMost];
-  float light_color[3][kMost];  ///< radiance or irradiance that arrives, textures included
+  float light_color[3][kMost];     ///< radiance or irradiance that arrives, textures included
+  std::uint64_t raised_light = 0;  ///< bit k: the light sample of hit k is that of its raised point
+
+  RaisedPoints* raised = nullptr;  ///< of the hits; null for places in a medium
 
   LightPoint from[kMost];  ///< for which lights are sampled, of the hits that are shaded in lanes
 };
@@ -70,6 +74,7 @@ struct PathRun {
 /// The columns of the next bounce.
 struct PathOnward : OnwardColumns {
   float* pdf;
+  float* unsampled;
   LightPoint* from;
   std::uint64_t transmitted = 0;  ///< how many of the rays are
 };

@@ -199,4 +199,108 @@ void sample_lights(const RenderContext& context, const std::uint32_t* entry, std
   sampler.finish();
 }
 
+// ---- Light samples of raised points.
+
+namespace {
+
+/// Moves the light sample of a hit to a raised point.
+class LightMover {
+ public:
+  LightMover(const RenderContext& context, PathBlock& block, std::size_t k, const Vec3f& raised)
+      : set_(context.sampled->set()),
+        sampled_(*context.sampled),
+        textures_(context.textures),
+        c_(block),
+        k_(k),
+        from_(block.from[k]),
+        to_(block.from[k]) {
+    to_.position = raised;
+  }
+
+  /// False if that light does not reach the raised point.
+  bool move() {
+    const bool far = !(c_.light_distance[k_] < std::numeric_limits<float>::infinity());
+    if (c_.light_kind[k_] == LightKind::delta) return far || move_point();
+    return far ? weigh(set_.environment_pdf(to_, direction())) : move_place();
+  }
+
+ private:
+  Vec3f direction() const { return InteractionBlock::get(c_.light_direction, k_); }
+  void set_color(const Color& color) { InteractionBlock::put(c_.light_color, k_, color); }
+
+  /// Light that is seen as a point has one direction.
+  bool move_point() {
+    const auto s = sample_emitter(set_.emitters()[c_.light_emitter[k_]], to_, {});
+    if (!s) return false;
+    set_way(s->direction, s->distance);
+    set_color(s->radiance * sampled_.texture_at(*s, textures_));
+    return true;
+  }
+
+  /// The sample stays at its place on the emitter, so its density there does, too.
+  bool move_place() {
+    const Emitter& emitter = set_.emitters()[c_.light_emitter[k_]];
+    const Vec3d before = Vec3d(direction()) * double{c_.light_distance[k_]};
+    const Vec3d place = Vec3d(from_.position) + before, after = place - Vec3d(to_.position);
+    const Vec3d normal = normal_at(emitter, place);
+    const double size_before = length(before), size_after = length(after);
+    // Solid angle that a small piece of the emitter fills, up to a factor that both have.
+    const double seen_before = dot(normal, before) / (size_before * size_before * size_before);
+    const double seen_after = dot(normal, after) / (size_after * size_after * size_after);
+    const double ratio = seen_after / seen_before;
+    if (!(ratio > 0)) return false;
+    const Vec3f direction(after / size_after);
+    const auto distance = static_cast<float>(size_after);
+    set_way(direction, distance);
+    set_color(InteractionBlock::get(c_.light_color, k_) * static_cast<float>(ratio));
+    return weigh(set_.pdf(to_, c_.light_emitter[k_], direction, distance));
+  }
+
+  void set_way(const Vec3f& direction, float distance) {
+    InteractionBlock::put(c_.light_direction, k_, direction);
+    c_.light_distance[k_] = distance;
+  }
+
+  /// Makes `pdf`, by which rays that meet the emitter are weighted, the density of the sample. What the light
+  /// is divided by stays the same.
+  bool weigh(float pdf) {
+    const Color light = InteractionBlock::get(c_.light_color, k_) * (pdf / c_.light_pdf[k_]);
+    if (!(pdf > 0) || !is_finite(light)) return false;
+    set_color(light);
+    c_.light_pdf[k_] = pdf;
+    return true;
+  }
+
+  const LightSet& set_;
+  const SceneLights& sampled_;
+  const TextureSampler* textures_;
+  PathBlock& c_;
+  std::size_t k_;
+  LightPoint from_, to_;
+};
+
+/// Whether light from the unit vector `l` comes from above the shading normal's horizon, but from behind the
+/// plane of the triangle.
+bool comes_from_behind(const PathBlock& c, std::size_t k, const Vec3f& l) {
+  return !(dot(InteractionBlock::get(c.ng, k), l) > 0) && dot(InteractionBlock::get(c.ns, k), l) > 0;
+}
+
+}  // namespace
+
+void raise_lights(const RenderContext& context, const std::uint32_t* entry, std::size_t count, PathBlock& c) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t k = entry[i];
+    if (c.light_kind[k] == LightKind::none || !c.from[k].front_only ||
+        !comes_from_behind(c, k, InteractionBlock::get(c.light_direction, k)))
+      continue;
+    const Vec3f* const raised = c.raised->point(k);
+    if (raised == nullptr) continue;
+    if (LightMover(context, c, k, *raised).move() &&
+        c.raised->leads_above(k, InteractionBlock::get(c.light_direction, k)))
+      c.raised_light |= std::uint64_t{1} << k;
+    else
+      c.light_kind[k] = LightKind::none;
+  }
+}
+
 }  // namespace oktett

@@ -43,4 +43,9 @@ struct LightCode {
 /// the bits of LightSet::sample.
 void sample_lights(const RenderContext& context, const std::uint32_t* entry, std::size_t count, PathBlock& c);
 
+/// Moves those of these samples to the raised points of their hits, see RaisedPoints, that come from above
+/// the shading normal's horizon, but from behind the plane of the triangle. They keep their places on
+/// emitters, and their densities become those at the raised points.
+void raise_lights(const RenderContext& context, const std::uint32_t* entry, std::size_t count, PathBlock& c);
+
 }  // namespace oktett

@@ -98,6 +98,9 @@ struct RayQueue {
 struct PathColumns {
   Column<float> pdf;  ///< of the direction, per solid angle; 0 for mirrors and clear glass, which no light
                       ///< sample replaces
+  /// Light samples choose no place of an emitter that is nearer than this along the ray: 0, but for rays that
+  /// start above the plane of the triangle that they lead behind.
+  Column<float> unsampled;
   Column<LightPoint> from;
   /// 1 if any surface on the path sent it on otherwise than mirrors and clear glass do. Set only if
   /// RenderContext::caustics is.
@@ -107,10 +110,13 @@ struct PathColumns {
 
   void clear() { resize_uninitialized(0), dielectrics.resize_uninitialized(0); }
   void resize_uninitialized(std::size_t n) {
-    pdf.resize_uninitialized(n), from.resize_uninitialized(n), scattered.resize_uninitialized(n);
+    pdf.resize_uninitialized(n), unsampled.resize_uninitialized(n);
+    from.resize_uninitialized(n), scattered.resize_uninitialized(n);
   }
-  void push_back(float density, const LightPoint& point, bool was_scattered, const DielectricStack* around) {
-    pdf.push_back(density), from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
+  void push_back(float density, float unsampled_up_to, const LightPoint& point, bool was_scattered,
+                 const DielectricStack* around) {
+    pdf.push_back(density), unsampled.push_back(unsampled_up_to);
+    from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
     if (around != nullptr) dielectrics.push_back(*around);
   }
 };

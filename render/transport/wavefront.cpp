@@ -126,6 +126,11 @@ ArrivingRays arriving_rays(Wavefront& wavefront) {
   return rays;
 }
 
+RaisedPoints raised_points(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                           const InteractionBlock& found) {
+  return {*context.world->accel, wavefront.rays.rays, wavefront.hits, which, found, context.isa};
+}
+
 /// Entries that the code of an instruction set may overwrite behind what it adds.
 static constexpr std::size_t kOverwritten = ShadingColumns::kGroup;
 

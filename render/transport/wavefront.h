@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/context.h"
+#include "render/raised_points.h"
 #include "render/render_options.h"
 #include "render/shading_point.h"
 #include "render/transport/path_block.h"
@@ -112,6 +113,9 @@ struct Wavefront {
 
 /// The columns of its rays, whose hits are known.
 ArrivingRays arriving_rays(Wavefront& wavefront);
+/// The raised points of the hits of its rays which[0], which[1], ..., of surfaces `found`.
+RaisedPoints raised_points(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                           const InteractionBlock& found);
 /// A queue opened for at most `more` rays, which are added behind those that it holds. Afterwards it must be
 /// resized to the rays that it has then.
 ShadowColumns end_of(ShadowQueue& queue, std::size_t more);

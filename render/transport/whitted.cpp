@@ -184,7 +184,8 @@ std::uint32_t pattern_of(const RenderContext& context, const Wavefront& wavefron
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found) {
   ShadingColumns c;
-  c.count = count;
+  RaisedPoints raised = raised_points(context, wavefront, which, found);
+  c.count = count, c.raised = &raised;
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), arriving_rays(wavefront), c);
@@ -244,7 +245,8 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
                          {wavefront.rays.distance[i], from_camera}, found[k]);
   };
   ShadingColumns c;
-  c.count = which.size();
+  RaisedPoints raised = raised_points(context, wavefront, which.data(), found);
+  c.count = which.size(), c.raised = &raised;
   name_hits(context, which.data(), found, c);
   // Their light that needs no emitter has been added before.
   Color radiance[ShadingColumns::kMost];
