@@ -67,6 +67,9 @@ struct Geometry {
   /// A number of the caller's own, found again in SurfaceInteraction::user. That of an instance, if not
   /// kNoId, replaces those of everything inside it; of nested instances the outermost counts.
   std::uint32_t user = kNoId;
+  /// What rays it is for: it is in a structure if it has one of the bits of BuildOptions::mask. Solids of
+  /// combinations are there in any case.
+  std::uint32_t mask = ~0u;
 };
 
 /// A node of a Boolean expression: an operand, or a combination of other nodes. Spheres, boxes, planes (the
@@ -87,10 +90,13 @@ enum class BuildQuality : std::uint8_t {
          ///< build
 };
 
-/// How a structure is built. No hit depends on it.
+/// How a structure is built. No hit depends on it but for `mask`.
 struct BuildOptions {
   BuildQuality quality = BuildQuality::balanced;
   bool parallel = true;  ///< use several threads; the structure is the same bytes
+  /// Geometries without any of these bits are left out. The others keep their numbers, and the items and
+  /// paths of hits are those of a structure of all, unless combinations or lists of instances are left out.
+  std::uint32_t mask = ~0u;
 };
 
 /// Sizes and quality of a built structure, without those of the structures it holds instances of.

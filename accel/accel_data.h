@@ -110,6 +110,17 @@ class WindingField;
 /// How a ray that crosses a mesh tells where it is inside, see accel/winding/mesh_sense.h.
 enum class MeshSense : std::uint8_t { closed, even, open, inverted };
 
+/// What questions about points need of meshes, made when it is first asked for: winding_field(accel) and,
+/// per geometry, mesh_sense(accel, geometry).
+struct PointAnswers {
+  std::once_flag winding_once, senses_once;
+  std::unique_ptr<const WindingField> winding;
+  std::vector<MeshSense> senses;
+
+  PointAnswers();
+  ~PointAnswers();
+};
+
 /// The tree over `geometries` and the pools that its leaves point to.
 ///
 /// Instance paths: within one structure, "no instance" is path kNoId, and a hit below instance item k with
@@ -152,11 +163,7 @@ class Accel {
   /// What is shown that closest_point does not answer for, in words; empty if there is nothing of the kind.
   /// [1]: if an instance shows this structure distorted.
   std::string no_closest_point[2];
-  /// What questions about points need of meshes, made when it is first asked for: winding_field(accel) and,
-  /// per geometry, mesh_sense(accel, geometry).
-  mutable std::once_flag winding_once, senses_once;
-  mutable std::unique_ptr<const WindingField> winding;
-  mutable std::vector<MeshSense> senses;
+  std::unique_ptr<PointAnswers> answers;  ///< not null
 
   OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
 

@@ -100,8 +100,10 @@ class PoolFiller {
   /// Numbers the paths in the order of items, so that hits at equal distance keep the order of the scene.
   void number_paths() {
     std::vector<PathStep>& steps = accel_.path_steps;
-    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)])
-      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), 0, false});
+    // Also of those that are left out.
+    for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
+      if (const auto* instance = std::get_if<InstanceGeometry>(&accel_.geometries[g].shape))
+        steps.push_back({0, accel_.first_item[g], instance->child.get(), 0, false});
     for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), 0, true});
     for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
       if (accel_.kinds[g] == static_cast<int>(Kind::instance_list) &&
@@ -417,11 +419,20 @@ double sah_cost(const Accel& accel) {
 
 }  // namespace
 
-Accel::Accel() = default;
+PointAnswers::PointAnswers() = default;
+PointAnswers::~PointAnswers() = default;
+Accel::Accel() : answers(std::make_unique<PointAnswers>()) {}
 Accel::~Accel() = default;
+
+/// A geometry with a singular transform is left out, but counts.
+static void leave_out(std::vector<Geometry>& geometries, std::uint32_t mask) {
+  for (Geometry& g : geometries)
+    if ((g.mask & mask) == 0) g.transform = Affine::scaling({0, 0, 0});
+}
 
 std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options) {
   auto accel = std::make_shared<Accel>();
+  leave_out(geometries, options.mask);
   wrap_sheared_shapes(geometries);
   accel->geometries = std::move(geometries);
   std::uint64_t items = 0;

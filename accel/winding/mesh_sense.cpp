@@ -62,7 +62,7 @@ void find_senses(const Accel& accel) {
   for (std::size_t g = 0; g < senses.size(); ++g)
     if (const auto* shape = std::get_if<MeshGeometry>(&accel.geometries[g].shape))
       senses[g] = sense_of(*shape->mesh);
-  accel.senses = std::move(senses);
+  accel.answers->senses = std::move(senses);
 }
 
 /// How many times a ray is deeper inside after a crossing.
@@ -114,8 +114,9 @@ std::uint64_t edge_number(std::uint64_t a, std::uint64_t b) {
 
 MeshSense mesh_sense(const Accel& accel, std::uint32_t geometry) {
   // A thread that waits in here takes no other task: that could ask for the same.
-  std::call_once(accel.senses_once, [&] { tbb::this_task_arena::isolate([&] { find_senses(accel); }); });
-  return accel.senses[geometry];
+  std::call_once(accel.answers->senses_once,
+                 [&] { tbb::this_task_arena::isolate([&] { find_senses(accel); }); });
+  return accel.answers->senses[geometry];
 }
 
 bool begins_inside(MeshSense sense, std::span<const Crossing> crossings) {

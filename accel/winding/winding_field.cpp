@@ -178,10 +178,11 @@ WindingField::WindingField(const Accel& accel) {
 
 const WindingField& winding_field(const Accel& accel) {
   // A thread that waits in here takes no other task: that could ask for the same field.
-  std::call_once(accel.winding_once, [&] {
-    tbb::this_task_arena::isolate([&] { accel.winding = std::make_unique<const WindingField>(accel); });
+  PointAnswers& answers = *accel.answers;
+  std::call_once(answers.winding_once, [&] {
+    tbb::this_task_arena::isolate([&] { answers.winding = std::make_unique<const WindingField>(accel); });
   });
-  return *accel.winding;
+  return *answers.winding;
 }
 
 // ---- Sums over trees.

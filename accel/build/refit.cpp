@@ -1,0 +1,169 @@
+#include "accel/build/refit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+
+#include "accel/build/mesh_source.h"
+#include "accel/build/tree_store.h"
+
+namespace oktett {
+namespace {
+
+/// Nodes so many levels below the root are refitted by tasks of their own.
+constexpr int kTaskLevels = 3;
+
+/// What a subtree has become.
+struct Part {
+  Box box;
+  double area = 0;  ///< half the areas of all boxes in it, its own included
+  std::uint64_t triangles = 0;
+};
+
+class Refit {
+ public:
+  Refit(Accel& accel, bool parallel)
+      : accel_(accel),
+        mesh_(*std::get<MeshGeometry>(accel.geometries[0].shape).mesh),
+        source_(accel),
+        parallel_(parallel) {}
+
+  bool run() {
+    const Part all = part(accel_.root, 0);
+    if (failed_ || all.triangles != mesh_.triangle_count()) return false;
+    accel_.bounds = all.box;
+    const double root = half_area(all.box);
+    accel_.stats.sah_cost = accel_.root.is_leaf() ? 1 : root > 0 ? all.area / root : 0;
+    return true;
+  }
+
+ private:
+  Part part(NodeRef ref, int level) {
+    if (!ref.is_leaf()) return node(accel_.nodes[ref.node_index()], level);
+    if (ref.is_triangles()) return block(accel_.blocks[ref.block()], ref.triangle_count());
+    const LeafEntry& leaf = accel_.leaves[ref.table_index()];
+    return block(accel_.blocks[leaf.begin], leaf.count);
+  }
+
+  Part node(BvhNode& node, int level) {
+    std::array<Part, BvhNode::kWidth> parts;
+    const auto one = [&](int i) {
+      if (node.child[i].is_none()) return;
+      const Part& p = parts[static_cast<std::size_t>(i)] = part(node.child[i], level + 1);
+      for (int axis = 0; axis < 3; ++axis)
+        node.plane[2 * axis][i] = p.box.lo[axis], node.plane[2 * axis + 1][i] = p.box.hi[axis];
+    };
+    if (parallel_ && level < kTaskLevels)
+      tbb::parallel_for(0, BvhNode::kWidth, one);
+    else
+      for (int i = 0; i < BvhNode::kWidth; ++i) one(i);
+    Part all;
+    for (int i = 0; i < BvhNode::kWidth; ++i) {
+      if (node.child[i].is_none()) continue;
+      const Part& p = parts[static_cast<std::size_t>(i)];
+      all.box.grow(p.box), all.area += p.area, all.triangles += p.triangles;
+    }
+    all.area += half_area(all.box);
+    return all;
+  }
+
+  /// The first `count` triangles of a block.
+  Part block(TriangleBlock& block, int count) {
+    Part part;
+    part.triangles = static_cast<std::uint64_t>(count);
+    if (!move(block, count) && !pack(block, count)) failed_ = true;
+    Vec3f lo{block.point[0][0], block.point[1][0], block.point[2][0]}, hi = lo;
+    bool finite = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      float sum = 0;
+      for (const float x : block.point[axis]) {
+        lo[axis] = std::min(x, lo[axis]), hi[axis] = std::max(x, hi[axis]);
+        sum += x * 0;  // NaN if x is not finite
+      }
+      finite &= sum == 0;
+    }
+    if (!finite) failed_ = true;
+    part.box = {lo, hi};
+    part.area = half_area(part.box);
+    return part;
+  }
+
+  /// Writes the corners to the places that they had. False if two that had one place lie apart.
+  bool move(TriangleBlock& block, int count) const {
+    std::uint32_t vertex[TriangleBlock::kCorners];
+    unsigned known = 0;
+    for (int i = 0; i < count; ++i) {
+      const std::uint32_t* index = &mesh_.indices[3 * std::size_t{block.item[i]}];
+      for (int k = 0; k < 3; ++k) {
+        const int n = block.corner(k, i);
+        const Vec3f& p = mesh_.positions[index[k]];
+        if ((known >> n & 1) != 0) {
+          if (vertex[n] != index[k] && std::memcmp(&mesh_.positions[vertex[n]], &p, sizeof p) != 0)
+            return false;
+          continue;
+        }
+        known |= 1u << n, vertex[n] = index[k];
+        for (int axis = 0; axis < 3; ++axis) block.point[axis][n] = p[axis];
+      }
+    }
+    for (int n = 0; n < TriangleBlock::kCorners; ++n)
+      if ((known >> n & 1) == 0)
+        for (int axis = 0; axis < 3; ++axis) block.point[axis][n] = block.point[axis][block.corner(0, 0)];
+    return true;
+  }
+
+  /// Numbers the corners anew. False if there are too many.
+  bool pack(TriangleBlock& block, int count) const {
+    std::uint32_t items[TriangleBlock::kSize];
+    std::uint16_t corners[TriangleBlock::kSize];
+    std::copy(block.item, block.item + count, items);
+    if (!source_.pack_corners(items, count, corners)) return false;
+    source_.fill(items, corners, count, block);
+    return true;
+  }
+
+  Accel& accel_;
+  const TriangleMesh& mesh_;
+  const MeshSource source_;
+  const bool parallel_;
+  std::atomic<bool> failed_ = false;
+};
+
+template <class T>
+VirtualArray<T> copy_of(const VirtualArray<T>& from, std::size_t size) {
+  VirtualArray<T> to(size);
+  if (size > 0) std::memcpy(to.data(), from.data(), size * sizeof(T));
+  return to;
+}
+
+}  // namespace
+
+bool can_refit(const Accel& accel) {
+  return accel.geometries.size() == 1 && std::holds_alternative<MeshGeometry>(accel.geometries[0].shape) &&
+         accel.frames[0].identity && !accel.pieces && !accel.root.is_none();
+}
+
+bool refit(Accel& accel, bool parallel) {
+  accel.answers = std::make_unique<PointAnswers>();
+  return Refit(accel, parallel).run();
+}
+
+std::shared_ptr<Accel> clone_tree(const Accel& accel) {
+  auto clone = std::make_shared<Accel>();
+  clone->geometries = accel.geometries, clone->first_item = accel.first_item;
+  clone->one_item_each = accel.one_item_each;
+  clone->root = accel.root, clone->bounds = accel.bounds;
+  clone->nodes = copy_of(accel.nodes, accel.stats.nodes);
+  clone->blocks = copy_of(accel.blocks, block_count(accel));
+  clone->leaves = accel.leaves;
+  clone->frames = accel.frames, clone->has_mirrors = accel.has_mirrors;
+  clone->kinds = accel.kinds, clone->users = accel.users;
+  clone->stats = accel.stats;
+  for (int k = 0; k < 2; ++k) clone->no_closest_point[k] = accel.no_closest_point[k];
+  return clone;
+}
+
+}  // namespace oktett
