@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/isa.h"
 #include "io/mesh/load/load_mesh.h"
+#include "verify/checks/changes.h"
 #include "verify/checks/csg.h"
 #include "verify/checks/endless.h"
 #include "verify/checks/exact.h"
@@ -177,6 +178,15 @@ class Report {
     combinations_.add("differing", t.differing);
   }
 
+  void changes(const ChangesTally& t) {
+    row(t, "changes",
+        fmt::format("{:<25}{:>10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>11}{:>9}", "random sequences", t.rays, t.hits,
+                    t.sequences, t.changes, t.builds, t.refits, t.differing, t.altered));
+    changes_.add("rays", t.rays), changes_.add("hits", t.hits), changes_.add("sequences", t.sequences);
+    changes_.add("changes", t.changes), changes_.add("builds", t.builds), changes_.add("refits", t.refits);
+    changes_.add("differing", t.differing), changes_.add("altered", t.altered);
+  }
+
   /// Prints the end of the report and returns the exit status.
   int finish(double seconds) const {
     if (json_) {
@@ -184,7 +194,7 @@ class Report {
       all.add("passed", failure_.empty()), all.add("failed_rows", failed_rows_), all.add("rays", rays_);
       all.add("seconds", seconds), all.add("first_failure", failure_);
       all.add("kernels", kernels_), all.add("surfaces", surfaces_), all.add("meshes", meshes_);
-      all.add("combinations", combinations_);
+      all.add("combinations", combinations_), all.add("changes", changes_);
       fmt::print("{}\n", all.text());
     } else {
       fmt::print("\n{} rays in {:.1f} s: {}\n", rays_, seconds,
@@ -206,7 +216,7 @@ class Report {
   }
 
   bool json_;
-  JsonObject kernels_, surfaces_, meshes_, combinations_;
+  JsonObject kernels_, surfaces_, meshes_, combinations_, changes_;
   std::uint64_t rays_ = 0, failed_rows_ = 0;
   std::string failure_;
 };
@@ -268,10 +278,17 @@ void verify_combinations(const VerifyArguments& arguments, std::uint64_t rays, R
   report.csg(verify_csg(rays, chosen_isas(arguments.isa)));
 }
 
+/// A thousandth of the rays are sequences.
+void verify_changes(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  report.heading(fmt::format("\n{:<25}{:>10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>11}{:>9}", "changes", "rays",
+                             "hits", "sequences", "changes", "builds", "refits", "differing", "altered"));
+  report.changes(verify_changes(rays / 1000 + 1, chosen_isas(arguments.isa)));
+}
+
 /// Throws Error if one of the requested surfaces does not exist.
 void check_surfaces(const std::vector<std::string>& asked) {
   std::vector<std::string> names = exact_oracle_names();
-  names.push_back("combinations");
+  names.push_back("combinations"), names.push_back("changes");
   for (const std::string& name : asked) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw Error(
@@ -310,6 +327,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (!meshes.empty()) verify_meshes(arguments, meshes, rays / 100 + 1, report);
   if (!arguments.meshes_only && arguments.wants("combinations"))
     verify_combinations(arguments, rays / 10, report);
+  if (!arguments.meshes_only && arguments.wants("changes")) verify_changes(arguments, rays, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }
@@ -325,7 +343,7 @@ void add_verify_command(CommandLine& line) {
   verb.option("--mesh", &arguments->meshes, "FILE",
               "Check this mesh too, also beside --surface; may be repeated");
   verb.option("--surface", &arguments->surfaces, "NAME",
-              "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated");
+              "Check this exact surface, `combinations` or `changes` only; may be repeated");
   verb.flag("--meshes-only", arguments->meshes_only,
             "Check meshes only: those given, else the generated ones");
   verb.choice("--isa", arguments->isa, "NAME", "One instruction set instead of all",

@@ -25,6 +25,9 @@ TEST(VerifyCommand, ChecksWhatItIsAskedFor) {
   EXPECT_EQ(trees.status, 0) << trees.out << trees.err;
   EXPECT_TRUE(contains(trees.out, "\"passed\": true")) << trees.out;
   EXPECT_TRUE(contains(trees.out, "\"wrong_spans\": 0"));
+  const CommandResult changes = run_command(dir, {"verify", "--surface", "changes", "--rays", "20000"});
+  EXPECT_EQ(changes.status, 0) << changes.out << changes.err;
+  EXPECT_TRUE(contains(changes.out, "\nrandom sequences ")) << changes.out;
 }
 
 TEST(VerifyCommand, MeshesBesideSurfacesAndAlone) {

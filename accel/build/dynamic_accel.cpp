@@ -1,0 +1,248 @@
+#include "accel/dynamic_accel.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "accel/accel_data.h"
+#include "accel/build/refit.h"
+#include "core/error.h"
+
+namespace oktett {
+
+/// A geometry, and its tree if it has one of its own.
+struct DynamicAccel::Entry {
+  enum class Stale : std::uint8_t {
+    none,
+    positions,  ///< those of the mesh have changed since the tree was built or refitted
+    all         ///< there is no tree yet
+  };
+
+  Geometry geometry;
+  bool enabled = true;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< kept alive; null: the caller does
+  std::shared_ptr<TriangleMesh> changed;     ///< `mesh`, if its positions have changed
+  std::shared_ptr<Accel> tree;
+  double built_cost = 0;  ///< of `tree` when it was built
+  Stale stale = Stale::all;
+  bool was_refitted = false;
+
+  bool has_tree() const {
+    if (std::holds_alternative<MeshGeometry>(geometry.shape) ||
+        std::holds_alternative<InstanceList>(geometry.shape) ||
+        std::holds_alternative<CsgGeometry>(geometry.shape))
+      return true;
+    const auto* const spheres = std::get_if<SpheresShape>(&geometry.shape);
+    return spheres != nullptr && spheres->spheres.size() > 1;
+  }
+};
+
+/// Whether SurfaceInteraction::user is that of the geometry itself.
+static bool has_own_user(const Geometry& geometry) {
+  return !std::holds_alternative<InstanceGeometry>(geometry.shape) &&
+         !std::holds_alternative<InstanceList>(geometry.shape) &&
+         !std::holds_alternative<CsgGeometry>(geometry.shape);
+}
+
+/// A structure with what it refers to.
+struct DynamicAccel::Snapshot {
+  std::shared_ptr<const Accel> accel;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+  std::vector<std::uint32_t> shown;  ///< the geometries in it
+};
+
+DynamicAccel::DynamicAccel(const BuildOptions& options) : options_(options) {}
+DynamicAccel::~DynamicAccel() = default;
+
+// ---- Changes.
+
+std::uint32_t DynamicAccel::add(Geometry geometry) {
+  if (entries_.size() >= kNoId) throw Error("more than 2^32 - 2 geometries were added");
+  const auto number = static_cast<std::uint32_t>(entries_.size());
+  if (geometry.user == kNoId && has_own_user(geometry)) geometry.user = number;
+  entries_.push_back(std::make_unique<Entry>());
+  entries_.back()->geometry = std::move(geometry);
+  snapshots_.clear();
+  return number;
+}
+
+void DynamicAccel::replace(std::uint32_t number, Geometry geometry) {
+  find(number);
+  if (geometry.user == kNoId && has_own_user(geometry)) geometry.user = number;
+  auto entry = std::make_unique<Entry>();
+  entry->geometry = std::move(geometry), entry->enabled = entries_[number]->enabled;
+  entries_[number] = std::move(entry);
+  snapshots_.clear();
+}
+
+std::uint32_t DynamicAccel::add(std::shared_ptr<const TriangleMesh> mesh, Geometry geometry) {
+  std::get<MeshGeometry>(geometry.shape).mesh = mesh.get();
+  const std::uint32_t number = add(std::move(geometry));
+  entries_.back()->mesh = std::move(mesh);
+  return number;
+}
+
+void DynamicAccel::replace(std::uint32_t number, std::shared_ptr<const TriangleMesh> mesh,
+                           Geometry geometry) {
+  std::get<MeshGeometry>(geometry.shape).mesh = mesh.get();
+  replace(number, std::move(geometry));
+  entries_[number]->mesh = std::move(mesh);
+}
+
+const DynamicAccel::Entry& DynamicAccel::find(std::uint32_t number) const {
+  if (number >= entries_.size() || entries_[number] == nullptr)
+    throw Error("there is no geometry " + std::to_string(number) +
+                (number < entries_.size() ? ": it was removed" : ""));
+  return *entries_[number];
+}
+DynamicAccel::Entry& DynamicAccel::find(std::uint32_t number) {
+  return const_cast<Entry&>(std::as_const(*this).find(number));
+}
+
+void DynamicAccel::remove(std::uint32_t number) {
+  find(number);
+  entries_[number].reset();
+  snapshots_.clear();
+}
+
+void DynamicAccel::set_enabled(std::uint32_t number, bool enabled) {
+  Entry& entry = find(number);
+  if (entry.enabled == enabled) return;
+  entry.enabled = enabled;
+  snapshots_.clear();
+}
+
+void DynamicAccel::set_transform(std::uint32_t number, const Affine& transform) {
+  Entry& entry = find(number);
+  if (!transform.is_invertible())
+    throw Error("the transform of geometry " + std::to_string(number) + " has no inverse");
+  entry.geometry.transform = transform;
+  snapshots_.clear();
+}
+
+void DynamicAccel::set_mask(std::uint32_t number, std::uint32_t mask) {
+  Entry& entry = find(number);
+  if (entry.geometry.mask == mask) return;
+  entry.geometry.mask = mask;
+  snapshots_.clear();
+}
+
+void DynamicAccel::set_vertices(std::uint32_t number, std::span<const Vec3f> positions, std::size_t first,
+                                std::span<const Vec3f> normals) {
+  Entry& entry = find(number);
+  auto* const shape = std::get_if<MeshGeometry>(&entry.geometry.shape);
+  if (shape == nullptr) throw Error("geometry " + std::to_string(number) + " is no mesh: it has no vertices");
+  const auto check = [&](std::size_t size, std::size_t given, const char* what) {
+    if (first > size || given > size - first)
+      throw Error("geometry " + std::to_string(number) + " has " + std::to_string(size) + ' ' + what + "; " +
+                  std::to_string(given) + " from number " + std::to_string(first) + " on were given");
+  };
+  check(shape->mesh->positions.size(), positions.size(), "vertices");
+  if (!normals.empty()) check(shape->mesh->normals.size(), normals.size(), "normals");
+  snapshots_.clear();
+  // A structure that somebody still holds refers to the mesh as it was.
+  if (entry.changed == nullptr || entry.changed.use_count() > 2) {
+    entry.changed = std::make_shared<TriangleMesh>(*shape->mesh);
+    entry.mesh = entry.changed;
+    shape->mesh = entry.changed.get();
+  }
+  std::ranges::copy(positions, entry.changed->positions.begin() + first);
+  std::ranges::copy(normals, entry.changed->normals.begin() + first);
+  if (entry.stale == Entry::Stale::none) entry.stale = Entry::Stale::positions;
+}
+
+const Geometry& DynamicAccel::geometry(std::uint32_t number) const { return find(number).geometry; }
+std::shared_ptr<const TriangleMesh> DynamicAccel::mesh(std::uint32_t number) const {
+  return find(number).mesh;
+}
+bool DynamicAccel::is_enabled(std::uint32_t number) const { return find(number).enabled; }
+
+std::vector<std::uint32_t> DynamicAccel::numbers() const {
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i)
+    if (entries_[i] != nullptr) all.push_back(i);
+  return all;
+}
+
+// ---- The structure.
+
+/// Brings the tree of a geometry up to date.
+void DynamicAccel::update(Entry& entry) {
+  if (entry.stale == Entry::Stale::none) return;
+  const bool moves = entry.stale == Entry::Stale::positions;
+  // Until there is a tree again.
+  entry.stale = Entry::Stale::all;
+  if (moves && can_refit(*entry.tree)) {
+    if (entry.tree.use_count() > 1) entry.tree = clone_tree(*entry.tree);
+    std::get<MeshGeometry>(entry.tree->geometries[0].shape).mesh = entry.changed.get();
+    if (refit(*entry.tree, options_.parallel) &&
+        entry.tree->stats.sah_cost <= kMostGrowth * entry.built_cost) {
+      entry.was_refitted = true, entry.stale = Entry::Stale::none;
+      return;
+    }
+  }
+  Geometry own;
+  own.shape = entry.geometry.shape, own.user = entry.geometry.user;
+  BuildOptions options = options_;
+  if (moves) options.quality = BuildQuality::fast;
+  entry.tree = std::const_pointer_cast<Accel>(build_accel({std::move(own)}, options));
+  entry.built_cost = entry.tree->stats.sah_cost;
+  entry.was_refitted = false, entry.stale = Entry::Stale::none;
+}
+
+/// Brings all trees up to date that rays may enter.
+void DynamicAccel::update() {
+  std::vector<Entry*> stale;
+  for (const auto& entry : entries_)
+    if (entry != nullptr && entry->enabled && entry->has_tree() && entry->stale != Entry::Stale::none)
+      stale.push_back(entry.get());
+  const auto one = [&](std::size_t i) { update(*stale[i]); };
+  if (options_.parallel)
+    tbb::parallel_for(std::size_t{0}, stale.size(), one);
+  else
+    for (std::size_t i = 0; i < stale.size(); ++i) one(i);
+  for (const Entry* entry : stale) ++(entry->was_refitted ? work_.refits : work_.builds);
+}
+
+std::shared_ptr<DynamicAccel::Snapshot> DynamicAccel::snapshot_of(std::uint32_t mask) const {
+  auto snapshot = std::make_shared<Snapshot>();
+  for (std::uint32_t i = 0; i < entries_.size(); ++i)
+    if (entries_[i] != nullptr && entries_[i]->enabled && (entries_[i]->geometry.mask & mask) != 0)
+      snapshot->shown.push_back(i);
+  for (const auto& [other, kept] : snapshots_)
+    if (kept->shown == snapshot->shown) return kept;
+  std::vector<Geometry> geometries;
+  for (const auto& entry : entries_) {
+    if (entry == nullptr || !entry->enabled) continue;
+    const Geometry& own = entry->geometry;
+    Geometry& shown = geometries.emplace_back();
+    shown.transform = own.transform, shown.user = own.user, shown.mask = own.mask;
+    if (entry->has_tree())
+      shown.shape = InstanceGeometry{entry->tree};
+    else
+      shown.shape = own.shape;
+    if (entry->mesh != nullptr) snapshot->meshes.push_back(entry->mesh);
+  }
+  if (geometries.size() == 1 && snapshot->shown.size() == 1 && geometries[0].transform.is_identity() &&
+      entries_[snapshot->shown[0]]->tree != nullptr) {
+    snapshot->accel = entries_[snapshot->shown[0]]->tree;
+    return snapshot;
+  }
+  BuildOptions options = options_;
+  options.mask = mask;
+  snapshot->accel = build_accel(std::move(geometries), options);
+  return snapshot;
+}
+
+std::shared_ptr<const Accel> DynamicAccel::accel() { return accel(~0u); }
+
+std::shared_ptr<const Accel> DynamicAccel::accel(std::uint32_t mask) {
+  if (snapshots_.empty()) update();
+  auto found = snapshots_.find(mask);
+  if (found == snapshots_.end()) found = snapshots_.emplace(mask, snapshot_of(mask)).first;
+  return {found->second, found->second->accel.get()};
+}
+
+}  // namespace oktett
