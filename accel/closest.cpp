@@ -159,13 +159,14 @@ void note_missing_closest(Accel& accel) {
   for (int distorted = 0; distorted < 2; ++distorted) {
     std::string& missing = accel.no_closest_point[distorted];
     missing = missing_here(accel, distorted == 1);
-    const auto add = [&](const Affine& to_child, const Accel& child) {
-      const bool distorts = distorted == 1 || to_child.uniform_scale() == 0;
-      if (missing.empty()) missing = child.no_closest_point[distorts];
+    const auto add = [&](const auto& instance, const Accel& child) {
+      if (!missing.empty() || (child.no_closest_point[0].empty() && child.no_closest_point[1].empty()))
+        return;
+      const bool distorts = distorted == 1 || Affine::from_rows(instance.to_child).uniform_scale() == 0;
+      missing = child.no_closest_point[distorts];
     };
-    for (const InstanceItem& i : accel.instances) add(Affine::from_rows(i.to_child), *i.child);
-    for (const ListedInstance& i : accel.listed_instances)
-      add(Affine::from_rows(i.to_child), *accel.listed_children[i.child]);
+    for (const InstanceItem& i : accel.instances) add(i, *i.child);
+    for (const ListedInstance& i : accel.listed_instances) add(i, *accel.listed_children[i.child]);
   }
 }
 

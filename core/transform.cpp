@@ -121,12 +121,14 @@ static bool all_finite(const Affine& a) {
   return true;
 }
 
-bool Affine::is_invertible() const {
+bool Affine::is_invertible() const { return is_invertible(inverse()); }
+
+bool Affine::is_invertible(const Affine& known_inverse) const {
   if (!all_finite(*this)) return false;
   // The determinant divided by the lengths of the columns measures how flat the image of the unit cube is.
   const double lengths = length(column(*this, 0)) * length(column(*this, 1)) * length(column(*this, 2));
   const double det = std::abs(determinant());
-  return det > 1e-14 * lengths && det > 0 && all_finite(inverse());
+  return det > 1e-14 * lengths && det > 0 && all_finite(known_inverse);
 }
 
 double Affine::uniform_scale() const {

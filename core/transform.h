@@ -50,6 +50,8 @@ struct Affine {
   Affine inverse() const;
   /// True if all entries are finite and the map has a finite inverse.
   bool is_invertible() const;
+  /// The same where the inverse is known already.
+  bool is_invertible(const Affine& known_inverse) const;
   /// True if all entries are exactly those of the identity.
   bool is_identity() const { return *this == Affine{}; }
   /// If the map is a uniform scale, possibly with rotation, mirror and translation, its scale factor; else 0.

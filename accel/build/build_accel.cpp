@@ -109,16 +109,18 @@ class PoolFiller {
       if (accel_.kinds[g] == static_cast<int>(Kind::instance_list) &&
           accel_.first_item[g] < accel_.first_item[g + 1])
         steps.push_back({0, accel_.first_item[g], nullptr, 1, false});
-    std::sort(steps.begin(), steps.end(),
-              [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
+    const auto by_item = [](const PathStep& a, const PathStep& b) { return a.item < b.item; };
+    if (!std::is_sorted(steps.begin(), steps.end(), by_item)) std::sort(steps.begin(), steps.end(), by_item);
     // Children that no instance shows need no numbers.
     for (const ListedInstance& listed : accel_.listed_instances) {
       std::uint32_t& stride = step_of(accel_.first_item[accel_.geometry_of(listed.item)]).stride;
       stride = std::max(stride, 1 + accel_.listed_children[listed.child]->path_count);
     }
     std::uint64_t paths = 0;
+    first_path_of_.resize(accel_.geometries.size());
     for (PathStep& step : steps) {
       step.first_path = static_cast<std::uint32_t>(paths);
+      first_path_of_[accel_.geometry_of(step.item)] = step.first_path;
       if (step.stride != 0) {
         const std::uint32_t g = accel_.geometry_of(step.item);
         paths += std::uint64_t{step.stride} * (accel_.first_item[g + 1] - step.item);
@@ -135,17 +137,15 @@ class PoolFiller {
     return *std::lower_bound(steps.begin(), steps.end(), item,
                              [](const PathStep& step, std::uint32_t value) { return step.item < value; });
   }
-  std::uint32_t first_path(std::uint32_t item) const { return step_of(item).first_path; }
 
   void fill_instances() {
     for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
-      const Geometry& g = geometry(item);
-      InstanceItem instance{};
-      g.transform.inverse().to_rows(instance.to_child);
-      instance.child = std::get<InstanceGeometry>(g.shape).child.get();
+      const std::uint32_t g = accel_.geometry_of(item);
+      InstanceItem& instance = accel_.instances.emplace_back();
+      accel_.frames[g].inverse.to_rows(instance.to_child);
+      instance.child = std::get<InstanceGeometry>(accel_.geometries[g].shape).child.get();
       instance.item = item;
-      instance.first_path = first_path(item);
-      accel_.instances.push_back(instance);
+      instance.first_path = first_path_of_[g];
     }
     accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
   }
@@ -171,17 +171,16 @@ class PoolFiller {
     std::vector<CsgItem> ordered;
     for (std::uint32_t index : order_[static_cast<int>(Kind::csg)]) {
       ordered.push_back(std::move(accel_.combinations[index]));
-      ordered.back().first_path = first_path(ordered.back().item);
+      ordered.back().first_path = first_path_of_[accel_.geometry_of(ordered.back().item)];
       accel_.stats.other_bytes += sizeof(CsgItem) + ordered.back().nodes.size() * sizeof(CsgNode) +
                                   stats(*ordered.back().solids).bytes();
     }
     accel_.combinations = std::move(ordered);
   }
 
-  const Geometry& geometry(std::uint32_t item) const { return accel_.geometries[accel_.geometry_of(item)]; }
-
   Accel& accel_;
   ItemOrder& order_;
+  std::vector<std::uint32_t> first_path_of_;  ///< of each geometry that rays enter
 };
 
 }  // namespace
@@ -200,6 +199,9 @@ std::size_t item_count(const Geometry& g) {
   visit_closed_form(g.shape, [&]<class S>(S, Kind, const auto& data) { count = shape_count<S>(data); });
   return count;
 }
+
+/// Whether the transform of each geometry is invertible; others are left out.
+using Usable = std::vector<bool>;
 
 bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
 
@@ -331,15 +333,15 @@ void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<Pr
 }
 
 /// Adds everything but triangles. Returns how many references there are before each geometry.
-std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrder& order,
-                                    const BuildOptions& options) {
+std::vector<std::size_t> add_others(Accel& accel, const Usable& usable, Column<PrimRef>& refs,
+                                    ItemOrder& order, const BuildOptions& options) {
   std::vector<std::size_t> first_ref;
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     first_ref.push_back(refs.size());
     const Geometry& geometry = accel.geometries[g];
     const Kind kind = kind_of(geometry);
     const std::uint32_t first = accel.first_item[g];
-    if (!geometry.transform.is_invertible()) continue;
+    if (!usable[g]) continue;
     if (kind == Kind::instance_list) {
       add_listed(accel, accel.geometries[g], first, refs, order);
       continue;
@@ -363,7 +365,7 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
 
 /// Writes all references in the order of their geometries into arrays.refs: to triangles, and `others`, which
 /// it uses up.
-void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
+void add_references(Accel& accel, const Usable& usable, const MeshSource& meshes, Column<PrimRef>& others,
                     const std::vector<std::size_t>& first_other, BuildArrays& arrays, bool parallel) {
   const PrimRef* next = others.begin();
   const auto add_others_before = [&](const PrimRef* end) {
@@ -371,8 +373,7 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& oth
     for (; next != end; ++next) arrays.refs[arrays.count++] = *next;
   };
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
-    const bool usable = accel.geometries[g].transform.is_invertible();
-    if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable) continue;
+    if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable[g]) continue;
     add_others_before(others.begin() + first_other[g]);
     accel.bounds.grow(meshes.add_references(g, arrays, parallel));
   }
@@ -381,9 +382,9 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& oth
 }
 
 /// Makes tree, bounds and the order of the items, or takes them from the store.
-void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
+void make_tree(Accel& accel, const Usable& usable, ItemOrder& order, const BuildOptions& options) {
   Column<PrimRef> others;
-  const std::vector<std::size_t> first_other = add_others(accel, others, order, options);
+  const std::vector<std::size_t> first_other = add_others(accel, usable, others, order, options);
   TreeStore* const store = tree_store();
   const bool keeps = store != nullptr && accel.stats.triangles >= store->least_triangles();
   const std::uint64_t key = keeps ? tree_key(accel, others, options) : 0;
@@ -391,7 +392,7 @@ void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
   {
     const MeshSource meshes(accel);
     BuildArrays arrays(others.size() + accel.stats.triangles, effort_of(options.quality));
-    add_references(accel, meshes, others, first_other, arrays, options.parallel);
+    add_references(accel, usable, meshes, others, first_other, arrays, options.parallel);
     build_tree(accel, arrays, meshes, order, options, build_kernels(available_isas().back()));
   }
   if (keeps) store->keep(key, accel, order);
@@ -436,11 +437,14 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   wrap_sheared_shapes(geometries);
   accel->geometries = std::move(geometries);
   std::uint64_t items = 0;
+  Usable usable;
   for (const Geometry& g : accel->geometries) {
     accel->first_item.push_back(static_cast<std::uint32_t>(items));
     items += item_count(g);
-    accel->frames.push_back(
-        {g.transform.inverse(), g.transform.is_identity(), g.transform.determinant() < 0});
+    GeometryFrame& frame = accel->frames.emplace_back();
+    frame.inverse = g.transform.inverse();
+    usable.push_back(g.transform.is_invertible(frame.inverse));
+    frame.identity = g.transform.is_identity(), frame.mirrored = g.transform.determinant() < 0;
     accel->has_mirrors |= accel->frames.back().mirrored;
     accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
     accel->users.push_back(g.user);
@@ -454,7 +458,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
     accel->one_item_each &= accel->first_item[g + 1] == g + 1;
 
   ItemOrder order;
-  make_tree(*accel, order, options);
+  make_tree(*accel, usable, order, options);
   fill_pools(*accel, order);
   accel->stats.unbounded = accel->unbounded.size();
   accel->stats.sah_cost = sah_cost(*accel);
