@@ -433,8 +433,8 @@ static void leave_out(std::vector<Geometry>& geometries, std::uint32_t mask) {
 
 std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options) {
   auto accel = std::make_shared<Accel>();
-  leave_out(geometries, options.mask);
   wrap_sheared_shapes(geometries);
+  leave_out(geometries, options.mask);
   accel->geometries = std::move(geometries);
   std::uint64_t items = 0;
   Usable usable;

@@ -25,7 +25,8 @@ struct DynamicAccel::Entry {
   std::shared_ptr<const TriangleMesh> mesh;  ///< kept alive; null: the caller does
   std::shared_ptr<TriangleMesh> changed;     ///< `mesh`, if its positions have changed
   std::shared_ptr<Accel> tree;
-  double built_cost = 0;  ///< of `tree` when it was built
+  std::unique_ptr<const RefitPlan> plan;  ///< of `tree`; made for the first refit
+  double built_cost = 0;                  ///< of `tree` when it was built
   Stale stale = Stale::all;
   bool was_refitted = false;
 
@@ -174,10 +175,12 @@ void DynamicAccel::update(Entry& entry) {
   const bool moves = entry.stale == Entry::Stale::positions;
   // Until there is a tree again.
   entry.stale = Entry::Stale::all;
-  if (moves && can_refit(*entry.tree)) {
+  if (moves && entry.plan == nullptr)
+    entry.plan = std::make_unique<const RefitPlan>(*entry.tree, *entry.changed);
+  if (moves && entry.plan->is_possible()) {
     if (entry.tree.use_count() > 1) entry.tree = clone_tree(*entry.tree);
     std::get<MeshGeometry>(entry.tree->geometries[0].shape).mesh = entry.changed.get();
-    if (refit(*entry.tree, options_.parallel) &&
+    if (refit(*entry.tree, *entry.plan, options_.parallel) &&
         entry.tree->stats.sah_cost <= kMostGrowth * entry.built_cost) {
       entry.was_refitted = true, entry.stale = Entry::Stale::none;
       return;
@@ -188,7 +191,7 @@ void DynamicAccel::update(Entry& entry) {
   BuildOptions options = options_;
   if (moves) options.quality = BuildQuality::fast;
   entry.tree = std::const_pointer_cast<Accel>(build_accel({std::move(own)}, options));
-  entry.built_cost = entry.tree->stats.sah_cost;
+  entry.built_cost = entry.tree->stats.sah_cost, entry.plan = nullptr;
   entry.was_refitted = false, entry.stale = Entry::Stale::none;
 }
 

@@ -1,7 +1,5 @@
 #include "accel/build/refit.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -9,6 +7,7 @@
 
 #include "accel/build/mesh_source.h"
 #include "accel/build/tree_store.h"
+#include "core/parallel.h"
 
 namespace oktett {
 namespace {
@@ -20,20 +19,20 @@ constexpr int kTaskLevels = 3;
 struct Part {
   Box box;
   double area = 0;  ///< half the areas of all boxes in it, its own included
-  std::uint64_t triangles = 0;
 };
 
 class Refit {
  public:
-  Refit(Accel& accel, bool parallel)
+  Refit(Accel& accel, const RefitPlan& plan, bool parallel)
       : accel_(accel),
+        plan_(plan),
         mesh_(*std::get<MeshGeometry>(accel.geometries[0].shape).mesh),
         source_(accel),
         parallel_(parallel) {}
 
   bool run() {
     const Part all = part(accel_.root, 0);
-    if (failed_ || all.triangles != mesh_.triangle_count()) return false;
+    if (failed_) return false;
     accel_.bounds = all.box;
     const double root = half_area(all.box);
     accel_.stats.sah_cost = accel_.root.is_leaf() ? 1 : root > 0 ? all.area / root : 0;
@@ -43,9 +42,9 @@ class Refit {
  private:
   Part part(NodeRef ref, int level) {
     if (!ref.is_leaf()) return node(accel_.nodes[ref.node_index()], level);
-    if (ref.is_triangles()) return block(accel_.blocks[ref.block()], ref.triangle_count());
+    if (ref.is_triangles()) return block(ref.block(), ref.triangle_count());
     const LeafEntry& leaf = accel_.leaves[ref.table_index()];
-    return block(accel_.blocks[leaf.begin], leaf.count);
+    return block(leaf.begin, leaf.count);
   }
 
   Part node(BvhNode& node, int level) {
@@ -64,29 +63,33 @@ class Refit {
     for (int i = 0; i < BvhNode::kWidth; ++i) {
       if (node.child[i].is_none()) continue;
       const Part& p = parts[static_cast<std::size_t>(i)];
-      all.box.grow(p.box), all.area += p.area, all.triangles += p.triangles;
+      all.box.grow(p.box), all.area += p.area;
     }
     all.area += half_area(all.box);
     return all;
   }
 
-  /// The first `count` triangles of a block.
-  Part block(TriangleBlock& block, int count) {
-    Part part;
-    part.triangles = static_cast<std::uint64_t>(count);
-    if (!move(block, count) && !pack(block, count)) failed_ = true;
-    Vec3f lo{block.point[0][0], block.point[1][0], block.point[2][0]}, hi = lo;
-    bool finite = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      float sum = 0;
-      for (const float x : block.point[axis]) {
-        lo[axis] = std::min(x, lo[axis]), hi[axis] = std::max(x, hi[axis]);
-        sum += x * 0;  // NaN if x is not finite
+  /// The first `count` triangles of block number `number`.
+  Part block(std::uint32_t number, int count) {
+    TriangleBlock& block = accel_.blocks[number];
+    if (const std::uint32_t* const vertices = plan_.vertices(number))
+      for (int n = 0; n < TriangleBlock::kCorners; ++n) {
+        const Vec3f& p = mesh_.positions[vertices[n]];
+        block.point[0][n] = p.x, block.point[1][n] = p.y, block.point[2][n] = p.z;
       }
-      finite &= sum == 0;
+    else if (!move(block, count) && !pack(block, count))
+      failed_ = true;
+    Part part;
+    float not_finite = 0;  // becomes NaN
+    for (int axis = 0; axis < 3; ++axis) {
+      float lo = block.point[axis][0], hi = lo;
+      for (const float x : block.point[axis]) {
+        lo = x < lo ? x : lo, hi = x > hi ? x : hi;
+        not_finite += x * 0;
+      }
+      part.box.lo[axis] = lo, part.box.hi[axis] = hi;
     }
-    if (!finite) failed_ = true;
-    part.box = {lo, hi};
+    if (not_finite != 0) failed_ = true;
     part.area = half_area(part.box);
     return part;
   }
@@ -126,11 +129,31 @@ class Refit {
   }
 
   Accel& accel_;
+  const RefitPlan& plan_;
   const TriangleMesh& mesh_;
   const MeshSource source_;
   const bool parallel_;
   std::atomic<bool> failed_ = false;
 };
+
+/// Notes the vertices of a block, see RefitPlan. Returns the number of its triangles.
+std::size_t note(const TriangleBlock& block, const TriangleMesh& mesh, std::uint32_t* vertices) {
+  std::fill(vertices, vertices + TriangleBlock::kCorners, kNoId);
+  std::size_t count = 0;
+  bool several = false;
+  for (; count < TriangleBlock::kSize && block.item[count] != kNoId; ++count)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex =
+          mesh.indices[3 * std::size_t{block.item[count]} + static_cast<std::size_t>(k)];
+      std::uint32_t& known = vertices[block.corner(k, static_cast<int>(count))];
+      several |= known != kNoId && known != vertex;
+      known = vertex;
+    }
+  // Corners that are not used repeat number 0.
+  std::replace(vertices, vertices + TriangleBlock::kCorners, kNoId, vertices[0]);
+  if (several) vertices[0] = kNoId;
+  return count;
+}
 
 template <class T>
 VirtualArray<T> copy_of(const VirtualArray<T>& from, std::size_t size) {
@@ -141,14 +164,24 @@ VirtualArray<T> copy_of(const VirtualArray<T>& from, std::size_t size) {
 
 }  // namespace
 
-bool can_refit(const Accel& accel) {
-  return accel.geometries.size() == 1 && std::holds_alternative<MeshGeometry>(accel.geometries[0].shape) &&
-         accel.frames[0].identity && !accel.pieces && !accel.root.is_none();
+RefitPlan::RefitPlan(const Accel& accel, const TriangleMesh& mesh) {
+  const std::size_t blocks = block_count(accel);
+  if (accel.pieces || accel.root.is_none()) return;
+  vertices_.resize_uninitialized(blocks * TriangleBlock::kCorners);
+  std::atomic<std::size_t> triangles = 0;
+  in_parts(blocks, 4096, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t b = begin; b < end; ++b)
+      count += note(accel.blocks[b], mesh, &vertices_[b * TriangleBlock::kCorners]);
+    triangles += count;
+  });
+  // Those that are not finite are left out of a tree.
+  is_possible_ = triangles == mesh.triangle_count();
 }
 
-bool refit(Accel& accel, bool parallel) {
+bool refit(Accel& accel, const RefitPlan& plan, bool parallel) {
   accel.answers = std::make_unique<PointAnswers>();
-  return Refit(accel, parallel).run();
+  return Refit(accel, plan, parallel).run();
 }
 
 std::shared_ptr<Accel> clone_tree(const Accel& accel) {

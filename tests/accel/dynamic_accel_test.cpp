@@ -90,6 +90,19 @@ TEST(DynamicAccel, MasksTellWhatRaysMeet) {
   EXPECT_EQ(scene.work().builds, 2u);
 }
 
+// A stretched sphere stands in the tree as an instance, which is counted also where it is left out.
+TEST(DynamicAccel, WhatMasksLeaveOutKeepsTheNumbersOfTheOthers) {
+  DynamicAccel scene;
+  const Affine stretched = Affine::translation({-5, 0, 0}) * Affine::scaling({1, 2, 3});
+  const std::uint32_t egg = scene.add({SpheresShape{{SphereShape{}}}, stretched, kNoId});
+  const std::uint32_t far = scene.add(ball(), a_mesh(Affine::translation({3, 0, 0})));
+  scene.set_mask(egg, 1);
+  const Hit hit = closest_hit(*scene.accel(2), along_x());
+  EXPECT_EQ(identify(*scene.accel(), hit).user, far);
+  scene.set_enabled(egg, false);
+  EXPECT_EQ(closest_hit(*scene.accel(), along_x()).t, hit.t);
+}
+
 TEST(DynamicAccel, StructuresThatWereTakenStayAsTheyWere) {
   DynamicAccel scene;
   const auto mesh = ball();
