@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "accel/hit_place.h"
@@ -67,7 +68,33 @@ bool has_inside(const Object& object, const Scene& scene) {
   return part.triangle_count() > 0 && find_open_edges(part).count == 0;
 }
 
+static bool needs_dielectrics(const Scene& scene) {
+  if (!traits(scene.integrator.kind).traces_paths) return false;
+  return scene.medium != kNoId || std::ranges::any_of(scene.materials, [](const Material& m) {
+           return m.interior != kNoId || m.priority != kNoPriority;
+         });
+}
+
+/// Whether the object bounds an inside that light enters.
+static bool is_entered(const Object& object, const Scene& scene) {
+  const auto lets_in = [&](std::uint32_t material) { return lets_light_in(scene, material); };
+  const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+  const bool by_slot = object.material == kNoId && mesh != nullptr;
+  return (by_slot ? std::ranges::any_of(mesh->slot_materials, lets_in) : lets_in(object.material)) &&
+         has_inside(object, scene);
+}
+
 // ---- Geometries of objects.
+
+static void set_materials(const Scene& scene, World& world) {
+  world.materials = scene.materials;
+  world.materials.emplace_back();
+  for (const Material& m : scene.materials) {
+    world.has_holes |=
+        m.opacity != 1 || m.opacity_texture != kNoId || m.tint_opacity_texture != kNoId || !m.surface;
+    world.has_clear |= m.transparency != 0;
+  }
+}
 
 namespace {
 
@@ -87,7 +114,7 @@ class WorldBuilder {
     }
     world_.sah_cost = stats(*world_.accel).sah_cost;
     world_.structure_objects = std::make_shared<const StructureObjects>(std::move(structure_objects_));
-    add_materials();
+    set_materials(scene_, world_);
     return std::move(world_);
   }
 
@@ -318,34 +345,9 @@ class WorldBuilder {
     world_.geometry_bytes += mesh->bytes();
   }
 
-  void add_materials() {
-    world_.materials = scene_.materials;
-    world_.materials.emplace_back();
-    for (const Material& m : scene_.materials) {
-      world_.has_holes |=
-          m.opacity != 1 || m.opacity_texture != kNoId || m.tint_opacity_texture != kNoId || !m.surface;
-      world_.has_clear |= m.transparency != 0;
-    }
-  }
-
-  static bool needs_dielectrics(const Scene& scene) {
-    if (!traits(scene.integrator.kind).traces_paths) return false;
-    return scene.medium != kNoId || std::ranges::any_of(scene.materials, [](const Material& m) {
-             return m.interior != kNoId || m.priority != kNoPriority;
-           });
-  }
-
-  bool may_enclose(const Object& object) const {
-    const auto encloses_slot = [&](std::uint32_t slot) { return lets_light_in(scene_, slot); };
-    const auto* mesh = std::get_if<MeshShape>(&object.shape);
-    if (object.material != kNoId || mesh == nullptr) return encloses_slot(object.material);
-    return std::ranges::any_of(mesh->slot_materials, encloses_slot);
-  }
-
   /// What ObjectMaterials::solid is for object number `id`.
   std::uint32_t solid(const Object& object, std::uint32_t id) {
-    if (!world_.tracks_dielectrics || !may_enclose(object)) return kNoId;
-    if (!has_inside(object, scene_)) return kNoId;
+    if (!world_.tracks_dielectrics || !is_entered(object, scene_)) return kNoId;
     world_.has_enclosing_solids = true;
     return combination_ != kNoId ? combination_ : id;
   }
@@ -363,6 +365,39 @@ class WorldBuilder {
 
 World build_world(const Scene& scene, const BuildOptions& options) {
   return WorldBuilder(scene, options).build();
+}
+
+World with_meshes(const World& others, const Scene& scene, std::size_t first,
+                  std::shared_ptr<const Accel> top) {
+  World world = others;
+  set_materials(scene, world);
+  std::vector<std::uint32_t> shown;  // as in StructureObjects
+  const bool shows_others = stats(*others.accel).items > 0;
+  if (shows_others) shown.push_back(kNoId);
+  world.paths_of_others = shows_others ? others.accel->path_count : 0;
+  std::set<const TriangleMesh*> seen;
+  for (const auto& mesh : world.meshes) seen.insert(mesh.get());
+  for (const Object& object : std::span(scene.objects).subspan(first)) {
+    const auto id = static_cast<std::uint32_t>(world.objects.size());
+    const auto& shape = std::get<MeshShape>(object.shape);
+    ObjectMaterials& own = world.objects.emplace_back();
+    own.material = object.material, own.slots = shape.slot_materials, own.name = object.name;
+    if (shape.mesh == nullptr) continue;
+    shown.push_back(id);
+    if (world.tracks_dielectrics && is_entered(object, scene))
+      own.solid = id, world.has_enclosing_solids = true;
+    const std::size_t count = shape.mesh->triangle_count();
+    world.triangles += count, world.primitives += count;
+    if (!seen.insert(shape.mesh.get()).second) continue;
+    world.meshes.push_back(shape.mesh);
+    world.geometry_bytes += shape.mesh->bytes();
+  }
+  auto structure_objects = std::make_shared<StructureObjects>(*others.structure_objects);
+  structure_objects->insert_or_assign(top.get(), std::move(shown));
+  world.structure_objects = std::move(structure_objects);
+  world.accel = std::move(top);
+  world.bounds = bounds(*world.accel);
+  return world;
 }
 
 std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time) {
@@ -395,6 +430,25 @@ static void bend(World& world, MovingObject& object, double time, const BuildOpt
   else
     geometries.push_back({MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user});
   object.shape = build_accel(std::move(geometries), options);
+}
+
+Box tight_bounds(const World& world) {
+  if (world.paths_of_others == kNoId) return world.bounds;
+  Box box;
+  for (const Geometry& shown : world.accel->geometries) {
+    const auto* const instance = std::get_if<InstanceGeometry>(&shown.shape);
+    // A mesh alone is the structure itself.
+    if (instance == nullptr) return world.bounds;
+    const Accel& child = *instance->child;
+    if (!shown.transform.is_invertible()) continue;
+    if (shown.transform.is_identity())
+      box.grow(child.bounds);
+    else
+      each_corner(*std::get<MeshGeometry>(child.geometries[0].shape).mesh, [&](const Vec3f& p) {
+        if (is_finite(p)) box.grow(Vec3f(shown.transform.point(Vec3d(p))));
+      });
+  }
+  return box;
 }
 
 void pose(World& world, double time, const BuildOptions& options) {

@@ -81,11 +81,31 @@ struct World {
   std::uint64_t bent_triangles = 0;             ///< of these: what each moment has a tree of its own for
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0;
   double sah_cost = 0;  ///< of the top level
+  /// Where meshes stand in structures of their own (with_meshes): how many paths the structure of the other
+  /// objects has; else kNoId. See chain_at.
+  std::uint32_t paths_of_others = kNoId;
 };
 
 /// Each prototype becomes one acceleration structure, shared by its instances. References that lead nowhere
 /// (a missing mesh, a prototype that does not stand earlier in the list) are left out.
 World build_world(const Scene& scene, const BuildOptions& options = {});
+
+/// The world of `others`, which is that of the objects of `scene` before number `first`, and of the objects
+/// from there on. These are meshes that do not move, and stand in `top` behind an instance of others.accel
+/// without a transform; `user` of their geometries there is their number in the world.
+World with_meshes(const World& others, const Scene& scene, std::size_t first,
+                  std::shared_ptr<const Accel> top);
+
+/// World::bounds, which with_meshes leaves larger, since instances have room for rounding: the box around the
+/// corners of all meshes as they are moved, and of the others. Visits all corners of moved meshes.
+Box tight_bounds(const World& world);
+
+/// The number of the chain of instances that a hit's `instance` leads through, kNoId for none, whether or not
+/// meshes stand in structures of their own.
+inline std::uint32_t chain_at(const World& world, std::uint32_t instance) {
+  if (world.paths_of_others == kNoId || instance == kNoId) return instance;
+  return instance >= 1 && instance <= world.paths_of_others ? instance - 1 : kNoId;
+}
 
 /// Places what moves where it is at `time`: changes `accel` and `bounds`. build_world does it for time 0.
 void pose(World& world, double time, const BuildOptions& options = {});

@@ -438,6 +438,9 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   accel->geometries = std::move(geometries);
   std::uint64_t items = 0;
   Usable usable;
+  const std::size_t count = accel->geometries.size();
+  accel->first_item.reserve(count + 1), accel->frames.reserve(count), usable.reserve(count);
+  accel->kinds.reserve(count), accel->users.reserve(count);
   for (const Geometry& g : accel->geometries) {
     accel->first_item.push_back(static_cast<std::uint32_t>(items));
     items += item_count(g);

@@ -78,7 +78,7 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
 }
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                           const Fields& fields) {
+                           const Fields& fields, std::uint32_t mask) {
   check_fields(fields, kHitFields);
   RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
@@ -86,7 +86,7 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
   visit_fields(columns, [&](const char* name, auto*& column, py::ssize_t components) {
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
   const RayRows& rows = arguments.rows_in(*world);
   make_places(result, "position", fields, arguments.shape, world->origin, columns.position);
   columns.attributes = attribute_columns(fields, *world);
@@ -96,21 +96,23 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
   return py::module_::import("oktett._results").attr("Hits")(**result);
 }
 
-py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax) {
+py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
+                      std::uint32_t mask) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
   const RayRows& rows = arguments.rows_in(*world);
   run_in_places(picture_order(rows),
                 [&](std::size_t, Places places) { any_hits(*world, rows, places, out); });
   return result;
 }
 
-py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax) {
+py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
+                         std::uint32_t mask) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
   const RayRows& rows = arguments.rows_in(*world);
   run_in_places(picture_order(rows), [&, out = result.mutable_data()](std::size_t, Places places) {
     count_hits(*world, rows, places, out);
@@ -156,7 +158,7 @@ py::array joined_splits(const std::vector<FoundHits>& pieces, std::size_t rays) 
 }
 
 py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                        const Fields& fields) {
+                        const Fields& fields, std::uint32_t mask) {
   check_fields(fields, kHitFields);
   RayArguments arguments(rays, tmin, tmax);
   // Only whether a column is null counts.
@@ -171,7 +173,7 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
       column = &some_id;
   });
   if (contains(fields, "position")) wanted.position.floats = &some_float;
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene);
+  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
   const RayRows& rows = arguments.rows_in(*world);
   const RayOrder order(rows.size, 0);
   std::vector<FoundHits> pieces(order.piece_count());
@@ -209,6 +211,7 @@ rays: shape (..., 6), origin and direction of each ray in a row. A hit is at ori
     in place, anything else is copied. The origin of a scene is taken off in float64 before.
 tmin, tmax: a number for all rays, or one for each, shape (...). tmin >= 0.
 fields: what is wanted. The others are None in the result.
+mask: 32 bits; rays meet objects that have one of them, see set_mask.
 
 Returns Hits:
     t          float32 (...)     distance; inf for a miss
@@ -226,12 +229,12 @@ Returns Hits:
 
 Values of corners are interpolated in double by the hit's uv, then rounded to float32.
 A ray with a NaN, or of direction zero, hits nothing. Of hits at equal distance the lowest (instance, object,
-primitive) counts. Raises ValueError for other shapes and types.)";
+primitive) counts, of those with meshes that were added the lowest (object, primitive), after all others. Raises ValueError for other shapes and types.)";
 
 constexpr const char* kAllHitsDoc = R"(Every hit of each ray, nearest first.
 
-A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields
-and errors are those of closest_hit.
+A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields,
+mask and errors are those of closest_hit.
 
 Returns HitLists: the fields of Hits, with the hits of ray 0 first, then those of ray 1, and so on; and
     splits     int64 (rays + 1,)  the hits of ray i are splits[i] to splits[i + 1] - 1)";
@@ -243,16 +246,18 @@ void bind_ray_queries(SceneClass& scene) {
   const Fields usual{"t", "object", "primitive", "uv", "normal"};
   const float zero = 0, infinity = std::numeric_limits<float>::infinity();
   scene.def("closest_hit", ask_closest_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "fields"_a = usual, kClosestHitDoc);
-  scene.def(
-      "any_hit", ask_any_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity,
-      "Whether each ray hits anything: bool (...). rays, tmin, tmax and errors are those of closest_hit.");
-  scene.def(
-      "count_hits", ask_count_hits, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity,
-      "How many hits all_hits lists for each ray: uint32 (...). rays, tmin, tmax and errors are those of "
-      "closest_hit.");
+            "fields"_a = usual, "mask"_a = ~0u, kClosestHitDoc);
+  scene.def("any_hit", ask_any_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
+            "mask"_a = ~0u,
+            "Whether each ray hits anything: bool (...). rays, tmin, tmax, mask and errors are those of "
+            "closest_hit.");
+  scene.def("count_hits", ask_count_hits, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
+            "mask"_a = ~0u,
+            "How many hits all_hits lists for each ray: uint32 (...). rays, tmin, tmax, mask and errors are "
+            "those of "
+            "closest_hit.");
   scene.def("all_hits", ask_all_hits, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "fields"_a = usual, kAllHitsDoc);
+            "fields"_a = usual, "mask"_a = ~0u, kAllHitsDoc);
 }
 
 }  // namespace oktett::python

@@ -19,7 +19,7 @@ using StorePointer = std::shared_ptr<SceneStore>;
 using FileBytes = std::map<std::string, py::bytes>;
 
 /// Grows with what pickles hold.
-constexpr int kPickleVersion = 3;
+constexpr int kPickleVersion = 4;
 
 const std::pair<const char*, BuildQuality> kQualities[] = {
     {"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}};
@@ -125,25 +125,35 @@ StorePointer from_dict(const py::object& description, const std::string& name, c
   return from_text(text, name, all, definitions, quality);
 }
 
+py::array matrix_of(const Affine& transform) {
+  DoubleArray matrix(ArrayShape{3, 4});
+  transform.to_rows(matrix.mutable_data());
+  return matrix;
+}
+
 py::tuple pickled(const SceneStore& scene) {
   py::dict files;
   for (const auto& [path, content] : scene.contents()) files[py::str(path)] = py::bytes(content);
   py::list meshes;
   for (const AddedMesh& added : scene.added()) {
-    py::array_t<double> transform(ArrayShape{3, 4});
-    added.transform.to_rows(transform.mutable_data());
     py::dict material;
     for (const auto& [path, content] : added.material_contents())
       material[py::str(path)] = py::bytes(content);
-    meshes.append(
-        py::make_tuple(columns_of(*added.mesh), transform, added.name, added.material_name, material));
+    meshes.append(py::make_tuple(columns_of(*added.mesh), matrix_of(added.transform), added.name,
+                                 added.material_name, material));
+  }
+  py::list changes;
+  for (const SceneStore::Change& change : scene.changes()) {
+    py::object transform = py::none();
+    if (change.transform) transform = matrix_of(*change.transform);
+    changes.append(py::make_tuple(change.number, change.enabled, change.removed, change.mask, transform));
   }
   return py::make_tuple(kPickleVersion, scene.path(), scene.definitions(), files, meshes,
-                        quality_name(scene.quality()));
+                        quality_name(scene.quality()), changes);
 }
 
 StorePointer unpickled(const py::tuple& state) {
-  if (state.size() != 6 || state[0].cast<int>() != kPickleVersion)
+  if (state.size() != 7 || state[0].cast<int>() != kPickleVersion)
     throw py::value_error("the pickle was made by another version of oktett");
   const auto path = state[1].cast<std::string>();
   const BuildQuality quality = parse_quality(state[5].cast<std::string>());
@@ -165,6 +175,14 @@ StorePointer unpickled(const py::tuple& state) {
     for (const auto& [file, content] : mesh[4].cast<FileBytes>()) added.material_files.emplace(file, content);
     store->add(std::move(added), files);
   }
+  for (const py::handle entry : state[6].cast<py::list>()) {
+    const auto change = entry.cast<py::tuple>();
+    const auto number = change[0].cast<std::uint32_t>(), mask = change[3].cast<std::uint32_t>();
+    if (!change[4].is_none()) store->set_transform(number, parse_transform(change[4]));
+    if (mask != ~0u) store->set_mask(number, mask);
+    if (!change[1].cast<bool>()) store->set_enabled(number, false);
+    if (change[2].cast<bool>()) store->remove(number);
+  }
   return store;
 }
 
@@ -177,7 +195,7 @@ py::array rows_array(const Vec3<T>& first, const Vec3<T>& second) {
 
 py::object scene_bounds(SceneStore& scene) {
   const std::shared_ptr<const PlacedWorld> world = world_of(scene);
-  const Box& box = world->bounds;
+  const Box box = tight_bounds(*world);
   if (!(box.lo.x <= box.hi.x)) return py::none();
   const Vec3d& origin = world->origin;
   if (origin == Vec3d{}) return rows_array(box.lo, box.hi);
@@ -269,6 +287,46 @@ ValueError for other shapes and for indices out of range.)");
   scene.def(py::pickle(&pickled, &unpickled));
 }
 
+void bind_changes(SceneClass& scene) {
+  using namespace pybind11::literals;
+  scene.def(
+      "set_transform",
+      [](SceneStore& s, std::uint32_t object, const py::object& transform) {
+        s.set_transform(object, parse_transform(transform));
+      },
+      "object"_a, "transform"_a,
+      R"(Moves an object.
+
+object: its number, as add_mesh returned it, or its index in objects.
+transform: shape (3, 4) or (4, 4), in place of the one it has; None for none.
+
+A mesh that was added keeps its tree. Raises ValueError for objects of prototypes and operands of
+combinations, which have no transform of the scene, and for objects that move by themselves.)");
+  scene.def(
+      "set_vertices",
+      [](SceneStore& s, std::uint32_t object, const py::object& vertices, std::size_t first,
+         const py::object& normals) { s.set_vertices(object, make_change(vertices, first, normals)); },
+      "object"_a, "vertices"_a, "first"_a = 0, py::kw_only(), "normals"_a = py::none(),
+      R"(Moves vertices of a mesh that was added.
+
+vertices: shape (n, 3), the new places of vertex number `first` and those behind it, as in add_mesh.
+normals: shape (n, 3), of the same vertices, if the mesh has normals of vertices; else they stay.
+
+Faces and all else stay. The tree of the mesh is fitted to the new places; it is built anew by a later query
+when rays would take 1.5 times as many steps as through the one that was built last.)");
+  scene.def(
+      "enable", [](SceneStore& s, std::uint32_t object) { s.set_enabled(object, true); }, "object"_a,
+      "Shows an object again that was disabled.");
+  scene.def(
+      "disable", [](SceneStore& s, std::uint32_t object) { s.set_enabled(object, false); }, "object"_a,
+      "Hides an object from rays, points and pictures.");
+  scene.def("remove", &SceneStore::remove, "object"_a,
+            "Removes an object for good. The numbers of the others, and its name, stay.");
+  scene.def("set_mask", &SceneStore::set_mask, "object"_a, "mask"_a,
+            "Gives a mesh that was added 32 bits. Queries with a mask meet it if both have a bit in common; "
+            "it begins with all.");
+}
+
 }  // namespace
 
 const Files& files() {
@@ -276,10 +334,10 @@ const Files& files() {
   return *entry.get_pointer<const Files>();
 }
 
-std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene) {
-  std::shared_ptr<const PlacedWorld> world = scene.built_world();
+std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene, std::uint32_t mask) {
+  std::shared_ptr<const PlacedWorld> world = scene.built_world(mask);
   if (world != nullptr) return world;
-  run_watched([&] { world = scene.world(); });
+  run_watched([&] { world = scene.world(mask); });
   say_lost_digits(scene, world->lost_digits);
   return world;
 }
@@ -291,6 +349,7 @@ void say_lost_digits(SceneStore& scene, const std::vector<Warning>& lost) {
 
 void bind_scene(SceneClass& scene) {
   bind_making(scene);
+  bind_changes(scene);
   scene.def(
       "build", [](SceneStore& s) { world_of(s); },
       "Builds the acceleration structure now rather than with the first query.");

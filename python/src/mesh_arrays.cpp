@@ -204,6 +204,28 @@ std::shared_ptr<const TriangleMesh> make_mesh(const MeshArrays& arrays) {
   return mesh;
 }
 
+MeshChange make_change(const py::object& vertices, std::size_t first, const py::object& normals) {
+  const py::array given = number_rows(vertices, "vertices", 3);
+  if (given.ndim() != 2) fail_shape("vertices", "(n, 3)", given);
+  MeshChange change;
+  change.first = first;
+  change.are_floats = given.dtype().kind() == 'f' && given.itemsize() <= 4;
+  const DoubleArray positions = dense<double>(given);
+  const auto count = static_cast<std::size_t>(given.shape(0));
+  change.positions.resize(count);
+  copy_to(positions.data(), 3 * count, change.positions.data());
+  if (normals.is_none()) return change;
+  const FloatArray rows = float_rows(normals, "normals", 3);
+  if (rows.ndim() != 2 || rows.shape(0) != given.shape(0))
+    fail_shape("normals", "(" + std::to_string(count) + ", 3)", rows);
+  change.normals.resize(count);
+  copy_to(rows.data(), 3 * count, change.normals.data());
+  for (const Vec3f& n : change.normals)
+    if (const float square = dot(n, n); !(square > 0 && std::isfinite(square)))
+      throw py::value_error("normals: expected vectors of a length");
+  return change;
+}
+
 py::tuple columns_of(const TriangleMesh& mesh) {
   py::list attributes;
   for (const MeshAttribute& a : mesh.attributes)

@@ -25,13 +25,14 @@ void set_columns(const RayRows& rays, Places places, RayBatch& columns) {
 /// Fills the columns of `out` for hits of the rays of the same number, which belong to `places`.
 class HitDescriber {
  public:
-  HitDescriber(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Places places,
+  HitDescriber(const World& world, const RaySpan& rays, const HitSpan& hits, Places places,
                const HitColumns& out)
-      : accel_(accel), rays_(rays), hits_(hits), places_(places), out_(out) {}
+      : world_(world), accel_(*world.accel), rays_(rays), hits_(hits), places_(places), out_(out) {}
 
   void describe() {
     if (out_.instance)
-      for (std::size_t i = 0; i < hits_.size; ++i) out_.instance[places_[i]] = hits_.instance[i];
+      for (std::size_t i = 0; i < hits_.size; ++i)
+        out_.instance[places_[i]] = chain_at(world_, hits_.instance[i]);
     std::uint32_t which[InteractionBlock::kMost];
     std::size_t count = 0;
     for (std::size_t i = 0; i < hits_.size; ++i) {
@@ -146,6 +147,7 @@ class HitDescriber {
     const std::uint32_t* indices;
   };
 
+  const World& world_;
   const Accel& accel_;
   Corners corners_[InteractionBlock::kMost];  ///< of the hits since the last flush
   std::size_t corner_count_ = 0;
@@ -173,7 +175,7 @@ T* sized(std::vector<T>& values, const void* wanted, std::size_t count) {
 
 void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, Places places,
                    const HitColumns& out) {
-  HitDescriber(*world.accel, rays, hits, places, out).describe();
+  HitDescriber(world, rays, hits, places, out).describe();
 }
 
 void closest_hits(const World& world, const RayRows& rays, Places places, const HitColumns& out) {

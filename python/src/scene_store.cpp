@@ -6,11 +6,13 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <variant>
 
 #include "core/error.h"
+#include "core/far_mesh.h"
 #include "render/append_materials.h"
 #include "render/look/default_look.h"
 #include "render/material.h"
@@ -38,7 +40,7 @@ std::uint32_t operand_count(const CsgShape& shape) {
   return count;
 }
 
-std::uint32_t count_objects(const std::vector<Object>& objects) {
+std::uint32_t count_objects(std::span<const Object> objects) {
   std::uint32_t count = 0;
   for (const Object& object : objects) {
     const auto* csg = std::get_if<CsgShape>(&object.shape);
@@ -120,6 +122,14 @@ std::shared_ptr<SceneStore> SceneStore::load(const Files& reader, const std::str
   store->files_ = std::move(files);
   store->textures_ = std::move(read.textures);
   store->own_textures_ = store->scene_.textures.size();
+  store->read_objects_ = store->scene_.objects.size();
+  store->states_.resize(store->read_objects_);
+  std::uint32_t number = 0;
+  for (const Prototype& prototype : store->scene_.prototypes) number += count_objects(prototype.objects);
+  for (const Object& object : store->scene_.objects) {
+    store->numbers_.push_back(number);
+    number += count_objects({&object, 1});
+  }
   for (const std::string& name : read.paths) store->read_.emplace(name, state_of(name));
   return store;
 }
@@ -147,9 +157,44 @@ std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
     material = reader().read(AddedMesh::kMaterialFile, {}, added.material_files);
     added.material_paths = material->paths;
   }
+  const std::lock_guard build(building_);
   const std::lock_guard lock(mutex_);
   const std::uint32_t number = python::object_count(scene_);
   Object object;
+  place(added, object);
+  object.name = added.name;
+  if (material) object.material = append_material(std::move(*material));
+  if (!added.material_name.empty()) object.material = material_of(scene_, added.material_name);
+  const std::size_t materials = scene_.materials.size();
+  show_colors(scene_, object);
+  if (material || scene_.materials.size() != materials) ++read_changes_;
+  scene_.objects.push_back(std::move(object));
+  added_.push_back(std::move(added));
+  states_.emplace_back(), numbers_.push_back(number);
+  worlds_.clear(), ++changes_;
+  return number;
+}
+
+// ---- Changes.
+
+std::size_t SceneStore::find(std::uint32_t number) const {
+  const auto at = std::ranges::lower_bound(numbers_, number);
+  const auto fail = [&](const char* why) { throw Error("object " + std::to_string(number) + ' ' + why); };
+  if (at == numbers_.end() || *at != number)
+    fail(number < python::object_count(scene_) ? "stands in a prototype or a combination" : "does not exist");
+  const auto k = static_cast<std::size_t>(at - numbers_.begin());
+  if (states_[k].removed) fail("was removed");
+  return k;
+}
+
+AddedMesh& SceneStore::find_added(std::uint32_t number, const char* what) {
+  const std::size_t k = find(number);
+  if (k < read_objects_)
+    throw Error("object " + std::to_string(number) + " was read: only meshes that were added have " + what);
+  return added_[k - read_objects_];
+}
+
+void SceneStore::place(const AddedMesh& added, Object& object) const {
   MeshShape shape;
   shape.mesh = added.mesh;
   object.shape = std::move(shape);
@@ -157,36 +202,196 @@ std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
   place_mesh(object);
   if (!(scene_.origin == Vec3d{}))
     object.transform = Affine::translation(scene_.origin * -1.0) * object.transform;
-  object.name = added.name;
-  if (material) object.material = append_material(std::move(*material));
-  if (!added.material_name.empty()) object.material = material_of(scene_, added.material_name);
-  show_colors(scene_, object);
-  scene_.objects.push_back(std::move(object));
-  added_.push_back(std::move(added));
-  world_.reset(), ++changes_;
-  return number;
 }
 
-std::shared_ptr<const PlacedWorld> SceneStore::built_world() const {
-  const std::lock_guard lock(mutex_);
-  return world_;
+void SceneStore::note_change(std::size_t object) {
+  worlds_.clear(), ++changes_;
+  if (object < read_objects_) ++read_changes_;
 }
 
-std::shared_ptr<const PlacedWorld> SceneStore::world() {
+void SceneStore::set_transform(std::uint32_t number, const Affine& transform) {
   const std::lock_guard build(building_);
-  Scene scene;
+  const std::lock_guard lock(mutex_);
+  const std::size_t k = find(number);
+  Object& object = scene_.objects[k];
+  if (k >= read_objects_) {
+    AddedMesh& added = added_[k - read_objects_];
+    added.transform = transform;
+    place(added, object);
+  } else {
+    if (object.motion != nullptr)
+      throw Error("object " + std::to_string(number) + " moves by itself; its transform cannot be set");
+    if (!(scene_.origin == Vec3d{}) && std::holds_alternative<InstanceShape>(object.shape))
+      throw Error("object " + std::to_string(number) +
+                  " is an instance in a scene far from the origin; its transform cannot be set");
+    object.transform = transform;
+    place_mesh(object);
+    object.transform = Affine::translation(scene_.origin * -1.0) * object.transform;
+    states_[k].transform = transform;
+  }
+  note_change(k);
+}
+
+void SceneStore::set_enabled(std::uint32_t number, bool enabled) {
+  const std::lock_guard build(building_);
+  const std::lock_guard lock(mutex_);
+  const std::size_t k = find(number);
+  if (std::exchange(states_[k].enabled, enabled) != enabled) note_change(k);
+}
+
+void SceneStore::remove(std::uint32_t number) {
+  const std::lock_guard build(building_);
+  const std::lock_guard lock(mutex_);
+  const std::size_t k = find(number);
+  states_[k].removed = true;
+  note_change(k);
+}
+
+void SceneStore::set_mask(std::uint32_t number, std::uint32_t mask) {
+  const std::lock_guard build(building_);
+  const std::lock_guard lock(mutex_);
+  find_added(number, "masks");
+  for (const Object& object : scene_.objects)
+    if (object.motion != nullptr) throw Error("scenes in which objects move by themselves have no masks");
+  const std::size_t k = find(number);
+  states_[k].mask = mask;
+  note_change(k);
+}
+
+std::shared_ptr<const TriangleMesh> SceneStore::replaced(const AddedMesh& added,
+                                                         const MeshChange& change) const {
+  const TriangleMesh& mesh = *added.mesh;
+  const std::size_t size = mesh.positions.size(), end = change.first + change.positions.size();
+  const auto position = [&](std::size_t i) {
+    return i >= change.first && i < end ? change.positions[i - change.first]
+                                        : Vec3d(mesh.positions[i]) + mesh.origin;
+  };
+  // Of nearly all meshes a few tell that they are not far.
+  std::vector<Vec3d> some;
+  for (std::size_t i = 0; i < 16 && size > 0; ++i) some.push_back(position(i * (size - 1) / 15));
+  const WideBox box = box_of_some(some);
+  if (mesh.origin == Vec3d{} && surely_near(box) && box.extent() > 0) return nullptr;
+  auto changed = std::make_shared<TriangleMesh>(mesh);
+  if (change.are_floats) {
+    changed->origin = {};
+    for (std::size_t i = 0; i < size; ++i) changed->positions[i] = Vec3f(position(i));
+    if (const std::optional<Vec3d> centre = far_centre(changed->positions, true)) take_off(*centre, *changed);
+  } else {
+    std::vector<Vec3d> all;
+    all.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) all.push_back(position(i));
+    set_positions(all, *changed);
+  }
+  std::ranges::copy(change.normals, changed->normals.begin() + change.first);
+  return changed;
+}
+
+void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
+  const std::lock_guard build(building_);
+  const std::lock_guard lock(mutex_);
+  AddedMesh& added = find_added(number, "vertices that can be moved");
+  const std::size_t k = find(number), size = added.mesh->positions.size();
+  if (change.first > size || change.positions.size() > size - change.first)
+    throw Error("vertices: object " + std::to_string(number) + " has " + std::to_string(size) +
+                " vertices; " + std::to_string(change.positions.size()) + " from number " +
+                std::to_string(change.first) + " on were given");
+  if (!change.normals.empty() && added.mesh->normals.size() != size)
+    throw Error("normals: object " + std::to_string(number) + " has no normals of vertices");
+  std::shared_ptr<const TriangleMesh> mesh = replaced(added, change);
+  const std::size_t i = k - read_objects_;
+  const bool stands = i < in_top_.size();
+  worlds_.clear();
+  if (mesh == nullptr && stands) {
+    // Nobody else may hold the mesh, or it would be copied.
+    added.mesh = nullptr, scene_.objects[k].shape = MeshShape{};
+    std::vector<Vec3f> positions;
+    positions.reserve(change.positions.size());
+    for (const Vec3d& p : change.positions) positions.push_back(Vec3f(p));
+    top_->set_vertices(in_top_[i], positions, change.first, change.normals);
+    mesh = top_->mesh(in_top_[i]);
+  } else if (mesh == nullptr) {
+    auto changed = std::make_shared<TriangleMesh>(*added.mesh);
+    std::ranges::transform(change.positions, changed->positions.begin() + change.first,
+                           [](const Vec3d& p) { return Vec3f(p); });
+    std::ranges::copy(change.normals, changed->normals.begin() + change.first);
+    mesh = std::move(changed);
+  } else if (stands) {
+    Geometry geometry = top_->geometry(in_top_[i]);
+    top_->replace(in_top_[i], mesh, std::move(geometry));
+  }
+  added.mesh = std::move(mesh);
+  Object& object = scene_.objects[k];
+  place(added, object);
+  note_change(k);
+}
+
+// ---- The structure.
+
+std::shared_ptr<const PlacedWorld> SceneStore::built_world(std::uint32_t mask) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = worlds_.find(mask);
+  return found != worlds_.end() ? found->second : nullptr;
+}
+
+Scene SceneStore::shown_scene() const {
+  Scene scene = scene_;
+  for (std::size_t k = 0; k < states_.size(); ++k)
+    if (states_[k].removed || !states_[k].enabled) scene.objects[k].shape = MeshShape{};
+  return scene;
+}
+
+World SceneStore::build(const Scene& scene, std::uint32_t mask) {
   BuildOptions options;
+  options.quality = quality_;
+  const bool moves = std::ranges::any_of(scene.objects, [](const Object& object) {
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    return object.motion != nullptr || (mesh != nullptr && mesh->bending != nullptr);
+  });
+  if (scene.objects.size() == read_objects_ || moves) {
+    World world = build_world(scene, options);
+    if (mask == 0) world.accel = build_accel({}, options);
+    return world;
+  }
+  if (others_ == nullptr || others_changes_ != read_changes_ || !(others_origin_ == scene.origin)) {
+    Scene read = scene;
+    read.objects.resize(read_objects_);
+    others_ = std::make_shared<const World>(build_world(read, options));
+    others_changes_ = read_changes_, others_origin_ = scene.origin;
+    const Geometry instance{InstanceGeometry{others_->accel}, {}, kNoId};
+    if (!top_) {
+      top_.emplace(options);
+      top_->add(instance);
+    } else {
+      top_->replace(0, instance);
+    }
+    top_->set_enabled(0, stats(*others_->accel).items > 0);
+  }
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    const std::size_t k = read_objects_ + i;
+    const Affine& transform = scene.objects[k].transform;
+    if (i == in_top_.size())
+      in_top_.push_back(top_->add(added_[i].mesh, {MeshGeometry{}, transform, numbers_[k]}));
+    if (!(top_->geometry(in_top_[i]).transform == transform)) top_->set_transform(in_top_[i], transform);
+    top_->set_enabled(in_top_[i], states_[k].enabled && !states_[k].removed);
+    top_->set_mask(in_top_[i], states_[k].mask);
+  }
+  return with_meshes(*others_, scene, read_objects_, top_->accel(mask));
+}
+
+std::shared_ptr<const PlacedWorld> SceneStore::world(std::uint32_t mask) {
+  const std::lock_guard build_lock(building_);
+  Scene scene;
   std::uint64_t changes;
   {
     const std::lock_guard lock(mutex_);
-    if (world_ != nullptr) return world_;
-    scene = scene_, options.quality = quality_, changes = changes_;
+    if (const auto found = worlds_.find(mask); found != worlds_.end()) return found->second;
+    scene = shown_scene(), changes = changes_;
   }
   recentre(scene);
   auto world = std::make_shared<const PlacedWorld>(
-      PlacedWorld{build_world(scene, options), scene.origin, find_lost_digits(scene)});
+      PlacedWorld{build(scene, mask), scene.origin, find_lost_digits(scene)});
   const std::lock_guard lock(mutex_);
-  if (changes == changes_) world_ = world;
+  if (changes == changes_) worlds_[mask] = world;
   return world;
 }
 
@@ -214,7 +419,7 @@ Scene SceneStore::scene() const {
   Scene scene;
   {
     const std::lock_guard lock(mutex_);
-    scene = scene_;
+    scene = shown_scene();
   }
   recentre(scene);
   return scene;
@@ -238,10 +443,23 @@ std::vector<AddedMesh> SceneStore::added() const {
   return added_;
 }
 
+std::vector<SceneStore::Change> SceneStore::changes() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Change> all;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const ObjectState& s = states_[k];
+    if (!s.enabled || s.removed || s.mask != ~0u || s.transform)
+      all.push_back({numbers_[k], s.enabled, s.removed, s.mask, s.transform});
+  }
+  return all;
+}
+
 void SceneStore::set_quality(BuildQuality quality) {
+  const std::lock_guard build(building_);
   const std::lock_guard lock(mutex_);
   quality_ = quality;
-  world_.reset(), ++changes_;
+  worlds_.clear(), ++changes_;
+  top_.reset(), in_top_.clear(), others_.reset();
 }
 
 BuildQuality SceneStore::quality() const {
