@@ -14,8 +14,8 @@ namespace oktett {
 
 /// Geometries that are added, removed, hidden, moved and bent, and the acceleration structure over them as
 /// they are. Each mesh, each combination, and each list of spheres or instances has a tree of its own, which
-/// is kept for as long as it does not change; the tree above is built anew. All else stands in the tree above
-/// itself.
+/// is kept for as long as it does not change. All else stands in the tree above, which is built anew, or
+/// refitted if nothing happened but that some of these trees were moved.
 ///
 /// Vertices that move refit the tree of their mesh: boxes and corners follow, links stay. When the expected
 /// cost of a ray (AccelStats::sah_cost) has grown by more than kMostGrowth since the tree was built, or the
@@ -94,12 +94,14 @@ class DynamicAccel {
   const Entry& find(std::uint32_t number) const;
   void update();
   void update(Entry& entry);
+  bool move(Snapshot& snapshot, std::uint32_t mask) const;
   std::shared_ptr<Snapshot> snapshot_of(std::uint32_t mask) const;
 
   BuildOptions options_;
   std::vector<std::unique_ptr<Entry>> entries_;  ///< by number; null: removed
   /// By mask; empty: something has changed since.
   std::map<std::uint32_t, std::shared_ptr<Snapshot>> snapshots_;
+  bool moved_ = false;  ///< transforms have changed since these were made
   Work work_;
 };
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,7 @@ struct DynamicAccel::Entry {
   };
 
   Geometry geometry;
+  Affine inverse;  ///< of its transform
   bool enabled = true;
   std::shared_ptr<const TriangleMesh> mesh;  ///< kept alive; null: the caller does
   std::shared_ptr<TriangleMesh> changed;     ///< `mesh`, if its positions have changed
@@ -40,6 +42,14 @@ struct DynamicAccel::Entry {
   }
 };
 
+/// Whether nobody else holds what `pointer` points to, nor still reads it in another thread.
+template <class T>
+static bool is_unshared(const std::shared_ptr<T>& pointer) {
+  if (pointer.use_count() > 1) return false;
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return true;
+}
+
 /// Whether SurfaceInteraction::user is that of the geometry itself.
 static bool has_own_user(const Geometry& geometry) {
   return !std::holds_alternative<InstanceGeometry>(geometry.shape) &&
@@ -52,6 +62,7 @@ struct DynamicAccel::Snapshot {
   std::shared_ptr<const Accel> accel;
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;
   std::vector<std::uint32_t> shown;  ///< the geometries in it
+  double built_cost = 0;             ///< of the tree when it was built
 };
 
 DynamicAccel::DynamicAccel(const BuildOptions& options) : options_(options) {}
@@ -65,6 +76,7 @@ std::uint32_t DynamicAccel::add(Geometry geometry) {
   if (geometry.user == kNoId && has_own_user(geometry)) geometry.user = number;
   entries_.push_back(std::make_unique<Entry>());
   entries_.back()->geometry = std::move(geometry);
+  entries_.back()->inverse = entries_.back()->geometry.transform.inverse();
   snapshots_.clear();
   return number;
 }
@@ -74,6 +86,7 @@ void DynamicAccel::replace(std::uint32_t number, Geometry geometry) {
   if (geometry.user == kNoId && has_own_user(geometry)) geometry.user = number;
   auto entry = std::make_unique<Entry>();
   entry->geometry = std::move(geometry), entry->enabled = entries_[number]->enabled;
+  entry->inverse = entry->geometry.transform.inverse();
   entries_[number] = std::move(entry);
   snapshots_.clear();
 }
@@ -117,10 +130,11 @@ void DynamicAccel::set_enabled(std::uint32_t number, bool enabled) {
 
 void DynamicAccel::set_transform(std::uint32_t number, const Affine& transform) {
   Entry& entry = find(number);
-  if (!transform.is_invertible())
+  const Affine inverse = transform.inverse();
+  if (!transform.is_invertible(inverse))
     throw Error("the transform of geometry " + std::to_string(number) + " has no inverse");
-  entry.geometry.transform = transform;
-  snapshots_.clear();
+  entry.geometry.transform = transform, entry.inverse = inverse;
+  moved_ = true;
 }
 
 void DynamicAccel::set_mask(std::uint32_t number, std::uint32_t mask) {
@@ -178,7 +192,7 @@ void DynamicAccel::update(Entry& entry) {
   if (moves && entry.plan == nullptr)
     entry.plan = std::make_unique<const RefitPlan>(*entry.tree, *entry.changed);
   if (moves && entry.plan->is_possible()) {
-    if (entry.tree.use_count() > 1) entry.tree = clone_tree(*entry.tree);
+    if (!is_unshared(entry.tree)) entry.tree = clone_tree(*entry.tree);
     std::get<MeshGeometry>(entry.tree->geometries[0].shape).mesh = entry.changed.get();
     if (refit(*entry.tree, *entry.plan, options_.parallel) &&
         entry.tree->stats.sah_cost <= kMostGrowth * entry.built_cost) {
@@ -217,6 +231,7 @@ std::shared_ptr<DynamicAccel::Snapshot> DynamicAccel::snapshot_of(std::uint32_t 
   for (const auto& [other, kept] : snapshots_)
     if (kept->shown == snapshot->shown) return kept;
   std::vector<Geometry> geometries;
+  geometries.reserve(entries_.size());
   for (const auto& entry : entries_) {
     if (entry == nullptr || !entry->enabled) continue;
     const Geometry& own = entry->geometry;
@@ -234,14 +249,43 @@ std::shared_ptr<DynamicAccel::Snapshot> DynamicAccel::snapshot_of(std::uint32_t 
     return snapshot;
   }
   BuildOptions options = options_;
-  options.mask = mask;
+  options.mask = mask, options.quality = BuildQuality::fast;
   snapshot->accel = build_accel(std::move(geometries), options);
+  snapshot->built_cost = stats(*snapshot->accel).sah_cost;
   return snapshot;
+}
+
+bool DynamicAccel::move(Snapshot& snapshot, std::uint32_t mask) const {
+  std::vector<Placement> places;
+  places.reserve(entries_.size());
+  // One that is alone, has a tree and is not moved is that tree itself.
+  bool is_alone = false;
+  for (const auto& entry : entries_) {
+    if (entry == nullptr || !entry->enabled) continue;
+    if (snapshot.accel == entry->tree) return false;
+    const Geometry& before = snapshot.accel->geometries[places.size()];
+    const bool is_seen = (entry->geometry.mask & mask) != 0;
+    const bool is_instance =
+        entry->has_tree() || std::holds_alternative<InstanceGeometry>(entry->geometry.shape);
+    if (is_seen && !is_instance && !(before.transform == entry->geometry.transform)) return false;
+    places.push_back(is_seen && is_instance ? Placement{&entry->geometry.transform, &entry->inverse}
+                                            : Placement{});
+    is_alone = entry->has_tree() && entry->geometry.transform.is_identity();
+  }
+  if (places.size() == 1 && is_alone) return false;
+  // Nobody else sees it.
+  Accel& accel = const_cast<Accel&>(*snapshot.accel);
+  return move_instances(accel, places, options_.parallel) &&
+         accel.stats.sah_cost <= kMostGrowth * snapshot.built_cost;
 }
 
 std::shared_ptr<const Accel> DynamicAccel::accel() { return accel(~0u); }
 
 std::shared_ptr<const Accel> DynamicAccel::accel(std::uint32_t mask) {
+  if (std::exchange(moved_, false) && !snapshots_.empty()) {
+    const auto& [of_mask, snapshot] = *snapshots_.begin();
+    if (snapshots_.size() > 1 || !is_unshared(snapshot) || !move(*snapshot, of_mask)) snapshots_.clear();
+  }
   if (snapshots_.empty()) update();
   auto found = snapshots_.find(mask);
   if (found == snapshots_.end()) found = snapshots_.emplace(mask, snapshot_of(mask)).first;

@@ -7,6 +7,8 @@
 
 #include "accel/build/mesh_source.h"
 #include "accel/build/tree_store.h"
+#include "accel/closest.h"
+#include "accel/geometry_bounds.h"
 #include "core/parallel.h"
 
 namespace oktett {
@@ -15,43 +17,40 @@ namespace {
 /// Nodes so many levels below the root are refitted by tasks of their own.
 constexpr int kTaskLevels = 3;
 
-/// What a subtree has become.
+/// What a part of a tree has become.
 struct Part {
   Box box;
   double area = 0;  ///< half the areas of all boxes in it, its own included
 };
 
-class Refit {
+/// Computes the boxes of a tree anew. leaf(ref, box) returns the part that a leaf has become; `box` is that
+/// which it had.
+template <class Leaf>
+class BoxFit {
  public:
-  Refit(Accel& accel, const RefitPlan& plan, bool parallel)
-      : accel_(accel),
-        plan_(plan),
-        mesh_(*std::get<MeshGeometry>(accel.geometries[0].shape).mesh),
-        source_(accel),
-        parallel_(parallel) {}
+  BoxFit(Accel& accel, bool parallel, const Leaf& leaf) : accel_(accel), parallel_(parallel), leaf_(leaf) {}
 
-  bool run() {
-    const Part all = part(accel_.root, 0);
-    if (failed_) return false;
+  /// Sets the bounds and the cost, too.
+  void run() {
+    const Part all = part(accel_.root, accel_.bounds, 0);
     accel_.bounds = all.box;
     const double root = half_area(all.box);
     accel_.stats.sah_cost = accel_.root.is_leaf() ? 1 : root > 0 ? all.area / root : 0;
-    return true;
   }
 
  private:
-  Part part(NodeRef ref, int level) {
-    if (!ref.is_leaf()) return node(accel_.nodes[ref.node_index()], level);
-    if (ref.is_triangles()) return block(ref.block(), ref.triangle_count());
-    const LeafEntry& leaf = accel_.leaves[ref.table_index()];
-    return block(leaf.begin, leaf.count);
+  Part part(NodeRef ref, const Box& box, int level) const {
+    return ref.is_leaf() ? leaf_(ref, box) : node(accel_.nodes[ref.node_index()], level);
   }
 
-  Part node(BvhNode& node, int level) {
+  Part node(BvhNode& node, int level) const {
     std::array<Part, BvhNode::kWidth> parts;
     const auto one = [&](int i) {
       if (node.child[i].is_none()) return;
-      const Part& p = parts[static_cast<std::size_t>(i)] = part(node.child[i], level + 1);
+      Box before;
+      for (int axis = 0; axis < 3; ++axis)
+        before.lo[axis] = node.plane[2 * axis][i], before.hi[axis] = node.plane[2 * axis + 1][i];
+      const Part& p = parts[static_cast<std::size_t>(i)] = part(node.child[i], before, level + 1);
       for (int axis = 0; axis < 3; ++axis)
         node.plane[2 * axis][i] = p.box.lo[axis], node.plane[2 * axis + 1][i] = p.box.hi[axis];
     };
@@ -69,8 +68,31 @@ class Refit {
     return all;
   }
 
+  Accel& accel_;
+  const bool parallel_;
+  const Leaf& leaf_;
+};
+
+/// The corners of the blocks of one mesh.
+class CornerFit {
+ public:
+  CornerFit(Accel& accel, const RefitPlan& plan)
+      : accel_(accel),
+        plan_(plan),
+        mesh_(*std::get<MeshGeometry>(accel.geometries[0].shape).mesh),
+        source_(accel) {}
+
+  bool failed() const { return failed_; }
+
+  Part operator()(NodeRef ref, const Box&) const {
+    if (ref.is_triangles()) return block(ref.block(), ref.triangle_count());
+    const LeafEntry& leaf = accel_.leaves[ref.table_index()];
+    return block(leaf.begin, leaf.count);
+  }
+
+ private:
   /// The first `count` triangles of block number `number`.
-  Part block(std::uint32_t number, int count) {
+  Part block(std::uint32_t number, int count) const {
     TriangleBlock& block = accel_.blocks[number];
     if (const std::uint32_t* const vertices = plan_.vertices(number))
       for (int n = 0; n < TriangleBlock::kCorners; ++n) {
@@ -132,8 +154,7 @@ class Refit {
   const RefitPlan& plan_;
   const TriangleMesh& mesh_;
   const MeshSource source_;
-  const bool parallel_;
-  std::atomic<bool> failed_ = false;
+  mutable std::atomic<bool> failed_ = false;
 };
 
 /// Notes the vertices of a block, see RefitPlan. Returns the number of its triangles.
@@ -181,7 +202,51 @@ RefitPlan::RefitPlan(const Accel& accel, const TriangleMesh& mesh) {
 
 bool refit(Accel& accel, const RefitPlan& plan, bool parallel) {
   accel.answers = std::make_unique<PointAnswers>();
-  return Refit(accel, plan, parallel).run();
+  const CornerFit fit(accel, plan);
+  BoxFit(accel, parallel, fit).run();
+  return !fit.failed();
+}
+
+bool move_instances(Accel& accel, const std::vector<Placement>& places, bool parallel) {
+  const auto is_moved = [](const Placement& place) { return place.to_world != nullptr; };
+  std::ptrdiff_t moved = 0;
+  for (const InstanceItem& instance : accel.instances)
+    moved += is_moved(places[accel.geometry_of(instance.item)]);
+  if (moved != std::ranges::count_if(places, is_moved)) return false;
+  in_parts(accel.instances.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t g = accel.geometry_of(accel.instances[k].item);
+      if (!is_moved(places[g])) continue;
+      Geometry& geometry = accel.geometries[g];
+      GeometryFrame& frame = accel.frames[g];
+      geometry.transform = *places[g].to_world, frame.inverse = *places[g].inverse;
+      frame.identity = geometry.transform.is_identity();
+      frame.mirrored = geometry.transform.determinant() < 0;
+      frame.inverse.to_rows(accel.instances[k].to_child);
+    }
+  });
+  accel.has_mirrors = std::ranges::any_of(accel.frames, &GeometryFrame::mirrored);
+  std::atomic<bool> failed = false;
+  const auto leaf = [&](NodeRef ref, const Box& before) {
+    Part part{before, 0};
+    const LeafEntry* const entry = ref.is_triangles() ? nullptr : &accel.leaves[ref.table_index()];
+    if (entry != nullptr && entry->kind == Kind::instance) {
+      part.box = {};
+      for (std::uint32_t k = entry->begin; k < entry->begin + entry->count; ++k) {
+        const InstanceItem& instance = accel.instances[k];
+        const Box box =
+            instance_bounds(accel.geometries[accel.geometry_of(instance.item)].transform, *instance.child);
+        if (box.empty() || !is_finite(box.lo) || !is_finite(box.hi)) failed = true;
+        part.box.grow(box);
+      }
+    }
+    part.area = half_area(part.box);
+    return part;
+  };
+  if (!accel.root.is_none()) BoxFit(accel, parallel, leaf).run();
+  accel.answers = std::make_unique<PointAnswers>();
+  note_missing_closest(accel);
+  return !failed;
 }
 
 std::shared_ptr<Accel> clone_tree(const Accel& accel) {

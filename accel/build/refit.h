@@ -32,6 +32,17 @@ class RefitPlan {
 /// corners of a block that lay at one place are too many apart.
 bool refit(Accel& accel, const RefitPlan& plan, bool parallel);
 
+/// A transform and its inverse; null: none.
+struct Placement {
+  const Affine* to_world = nullptr;
+  const Affine* inverse = nullptr;
+};
+
+/// Moves instances of a structure: geometry g, which is an instance, to places[g], unless that is null.
+/// Boxes, bounds and the stats follow; links stay. Returns false, and then the structure must not be used any
+/// more, if one of them is not in the tree, or cannot be.
+bool move_instances(Accel& accel, const std::vector<Placement>& places, bool parallel);
+
 /// The same tree of one mesh in memory of its own.
 std::shared_ptr<Accel> clone_tree(const Accel& accel);
 

@@ -150,6 +150,22 @@ TEST(DynamicAccel, TreesAreKeptRefittedAndBuiltAnew) {
   EXPECT_EQ(scene.work().refits, 1u);
 }
 
+// The tree above is refitted; a tree that is alone and not moved is the structure itself.
+TEST(DynamicAccel, WhatMovesIsSeenWhereItIsWithTheNumbersOfAFreshStructure) {
+  DynamicAccel scene;
+  const std::uint32_t number = scene.add(ball(), a_mesh(Affine::translation({5, 0, 0})));
+  const auto hit = [&] { return closest_hit(*scene.accel(), along_x()); };
+  const float far = hit().t;
+  EXPECT_EQ(hit().instance, 0u);
+  scene.set_transform(number, Affine::translation({4, 0, 0}));
+  EXPECT_NEAR(hit().t, far - 1, 1e-5);
+  EXPECT_EQ(bounds(*scene.accel()).center().x, 4);
+  scene.set_transform(number, {});
+  EXPECT_NEAR(hit().t, far - 5, 1e-5);
+  EXPECT_EQ(hit().instance, kNoId);
+  EXPECT_EQ(scene.work().builds, 1u);
+}
+
 TEST(DynamicAccel, WrongCallsAreErrors) {
   DynamicAccel scene;
   const std::uint32_t mesh = scene.add(ball(0), a_mesh());
