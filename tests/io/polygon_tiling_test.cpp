@@ -142,8 +142,8 @@ TEST(PolygonTiling, RandomSimplePolygonsAreTiled) {
     expect_even_odd(triangles, p, 10, random);
     // The sweep alone, which large polygons are cut by.
     std::vector<PlanePoint> points;
-    for (const GridPoint& q : p)
-      points.push_back({static_cast<double>(q.x), static_cast<double>(doubled_area(p) > 0 ? q.y : -q.y)});
+    const std::int64_t up = doubled_area(p) > 0 ? 1 : -1;
+    for (const GridPoint& q : p) points.push_back({static_cast<double>(q.x), static_cast<double>(up * q.y)});
     EXPECT_TRUE(sweep.run(points));
     ASSERT_EQ(sweep.triangles().size(), 3 * (p.size() - 2));
     expect_a_disk(sweep.triangles(), p.size());
