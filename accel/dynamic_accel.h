@@ -105,4 +105,13 @@ class DynamicAccel {
   Work work_;
 };
 
+/// hits[i] becomes the nearest hit of ray i, which has the mask masks[i]; see DynamicAccel::accel(mask). The
+/// rays of each structure are traced together. Throws Error if the arrays differ in size.
+void closest_hit(DynamicAccel& scene, const RaySpan& rays, std::span<const std::uint32_t> masks,
+                 const HitSpan& hits, Isa isa = default_isa());
+
+/// occluded[i] becomes 1 if ray i, which has the mask masks[i], hits anything, else 0.
+void any_hit(DynamicAccel& scene, const RaySpan& rays, std::span<const std::uint32_t> masks,
+             std::span<std::uint8_t> occluded, Isa isa = default_isa());
+
 }  // namespace oktett

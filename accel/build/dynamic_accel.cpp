@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "accel/accel_data.h"
+#include "accel/batch_pieces.h"
 #include "accel/build/refit.h"
 #include "core/error.h"
 
@@ -290,6 +291,51 @@ std::shared_ptr<const Accel> DynamicAccel::accel(std::uint32_t mask) {
   auto found = snapshots_.find(mask);
   if (found == snapshots_.end()) found = snapshots_.emplace(mask, snapshot_of(mask)).first;
   return {found->second, found->second->accel.get()};
+}
+
+// ---- Rays with masks of their own.
+
+/// Calls trace(structure, rays, numbers) for the rays of each structure, which have these numbers.
+template <class Trace>
+static void trace_by_mask(DynamicAccel& scene, const RaySpan& rays, std::span<const std::uint32_t> masks,
+                          std::size_t results, const char* query, const Trace& trace) {
+  require_same_size(rays.size, masks.size(), query);
+  require_same_size(rays.size, results, query);
+  std::map<std::uint32_t, std::shared_ptr<const Accel>> of_mask;
+  std::map<const Accel*, std::vector<std::uint32_t>> numbers;
+  for (std::uint32_t i = 0; i < rays.size; ++i) {
+    std::shared_ptr<const Accel>& accel = of_mask[masks[i]];
+    if (accel == nullptr) accel = scene.accel(masks[i]);
+    numbers[accel.get()].push_back(i);
+  }
+  RayBatch batch;
+  for (const auto& [accel, own] : numbers) {
+    batch.resize_uninitialized(own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) batch.set(k, rays[own[k]]);
+    trace(*accel, batch, own);
+  }
+}
+
+void closest_hit(DynamicAccel& scene, const RaySpan& rays, std::span<const std::uint32_t> masks,
+                 const HitSpan& hits, Isa isa) {
+  HitBatch found;
+  trace_by_mask(scene, rays, masks, hits.size, "closest_hit",
+                [&](const Accel& accel, const RayBatch& batch, const std::vector<std::uint32_t>& numbers) {
+                  found.resize_uninitialized(batch.size());
+                  closest_hit(accel, batch.span(), found.span(), isa);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) hits.set(numbers[k], found[k]);
+                });
+}
+
+void any_hit(DynamicAccel& scene, const RaySpan& rays, std::span<const std::uint32_t> masks,
+             std::span<std::uint8_t> occluded, Isa isa) {
+  std::vector<std::uint8_t> found;
+  trace_by_mask(scene, rays, masks, occluded.size(), "any_hit",
+                [&](const Accel& accel, const RayBatch& batch, const std::vector<std::uint32_t>& numbers) {
+                  found.resize(batch.size());
+                  any_hit(accel, batch.span(), found, isa);
+                  for (std::size_t k = 0; k < numbers.size(); ++k) occluded[numbers[k]] = found[k];
+                });
 }
 
 }  // namespace oktett

@@ -108,13 +108,13 @@ class Scene:
         tmax: npt.ArrayLike = ...,
         *,
         fields: Sequence[Field] = ...,
-        mask: int = 0xFFFFFFFF,
+        mask: npt.ArrayLike = 0xFFFFFFFF,
     ) -> Hits: ...
     def any_hit(
-        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: int = 0xFFFFFFFF
+        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: npt.ArrayLike = 0xFFFFFFFF
     ) -> npt.NDArray[np.bool_]: ...
     def count_hits(
-        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: int = 0xFFFFFFFF
+        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: npt.ArrayLike = 0xFFFFFFFF
     ) -> npt.NDArray[np.uint32]: ...
     def all_hits(
         self,

@@ -1,6 +1,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,67 @@ void run_in_places(const RayOrder& order, const Work& work) {
   });
 }
 
+/// The masks of rays: one for all, or one for each.
+class RayMasks {
+ public:
+  RayMasks(SceneStore& scene, py::handle given, const ArrayShape& shape) {
+    if (py::isinstance<py::int_>(given)) {
+      worlds_.push_back(world_of(scene, mask_of(given)));
+      return;
+    }
+    const py::array array = py::array::ensure(given);
+    PyErr_Clear();
+    const char kind = array ? array.dtype().kind() : 'f';
+    if ((kind == 'u' || kind == 'i') && array.ndim() == 0) {
+      worlds_.push_back(world_of(scene, mask_of(array.attr("item")())));
+      return;
+    }
+    if ((kind != 'u' && kind != 'i') || row_shape_of(array) != shape)
+      throw py::value_error("mask: expected a number of 32 bits, or an array of them of shape " +
+                            text_of(shape));
+    each_ = dense<std::uint32_t>(array);
+    std::map<std::uint32_t, std::uint32_t> index;
+    for (py::ssize_t i = 0; i < each_.size(); ++i) {
+      const auto [found, is_new] =
+          index.try_emplace(each_.data()[i], static_cast<std::uint32_t>(worlds_.size()));
+      if (is_new) worlds_.push_back(world_of(scene, found->first));
+      index_.push_back(found->second);
+    }
+    if (worlds_.empty()) worlds_.push_back(world_of(scene));
+  }
+
+  /// One of the worlds, which differ in what rays meet alone.
+  const PlacedWorld& world() const { return *worlds_[0]; }
+
+  /// Calls work(world, places) for the pieces of all rays, those with each mask by themselves.
+  template <class Work>
+  void run(const RayOrder& order, const Work& work) const {
+    run_in_places(order, [&](std::size_t, Places places) {
+      if (worlds_.size() == 1) return work(*worlds_[0], places);
+      std::map<std::uint32_t, std::vector<std::size_t>> of_world;
+      for (const std::size_t place : places) of_world[index_[place]].push_back(place);
+      for (const auto& [index, own] : of_world) work(*worlds_[index], Places(own));
+    });
+  }
+
+ private:
+  static std::uint32_t mask_of(py::handle given) {
+    try {
+      return given.cast<std::uint32_t>();
+    } catch (const py::cast_error&) {
+      throw py::value_error("mask: expected a number of 32 bits");
+    }
+  }
+  static ArrayShape row_shape_of(const py::array& array) {
+    return {array.shape(), array.shape() + array.ndim()};
+  }
+  static std::string text_of(const ArrayShape& shape) { return py::str(py::tuple(py::cast(shape))); }
+
+  std::vector<std::shared_ptr<const PlacedWorld>> worlds_;
+  std::vector<std::uint32_t> index_;  ///< of each ray: its world; empty if there is one
+  py::array_t<std::uint32_t, py::array::c_style> each_;
+};
+
 RayOrder picture_order(const RayRows& rays) {
   return RayOrder(rays.size, picture_width(rays.rows, rays.size));
 }
@@ -78,7 +140,7 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
 }
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                           const Fields& fields, std::uint32_t mask) {
+                           const Fields& fields, py::handle mask) {
   check_fields(fields, kHitFields);
   RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
@@ -86,36 +148,35 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
   visit_fields(columns, [&](const char* name, auto*& column, py::ssize_t components) {
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
-  const RayRows& rows = arguments.rows_in(*world);
-  make_places(result, "position", fields, arguments.shape, world->origin, columns.position);
-  columns.attributes = attribute_columns(fields, *world);
+  const RayMasks masks(scene, mask, arguments.shape);
+  const RayRows& rows = arguments.rows_in(masks.world());
+  make_places(result, "position", fields, arguments.shape, masks.world().origin, columns.position);
+  columns.attributes = attribute_columns(fields, masks.world());
   make_attributes(result, arguments.shape, columns.attributes, fields);
-  run_in_places(picture_order(rows),
-                [&](std::size_t, Places places) { closest_hits(*world, rows, places, columns); });
+  masks.run(picture_order(rows),
+            [&](const World& world, Places places) { closest_hits(world, rows, places, columns); });
   return py::module_::import("oktett._results").attr("Hits")(**result);
 }
 
-py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                      std::uint32_t mask) {
+py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax, py::handle mask) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
-  const RayRows& rows = arguments.rows_in(*world);
-  run_in_places(picture_order(rows),
-                [&](std::size_t, Places places) { any_hits(*world, rows, places, out); });
+  const RayMasks masks(scene, mask, arguments.shape);
+  const RayRows& rows = arguments.rows_in(masks.world());
+  masks.run(picture_order(rows),
+            [&](const World& world, Places places) { any_hits(world, rows, places, out); });
   return result;
 }
 
 py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                         std::uint32_t mask) {
+                         py::handle mask) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
-  const std::shared_ptr<const PlacedWorld> world = world_of(scene, mask);
-  const RayRows& rows = arguments.rows_in(*world);
-  run_in_places(picture_order(rows), [&, out = result.mutable_data()](std::size_t, Places places) {
-    count_hits(*world, rows, places, out);
+  const RayMasks masks(scene, mask, arguments.shape);
+  const RayRows& rows = arguments.rows_in(masks.world());
+  masks.run(picture_order(rows), [&, out = result.mutable_data()](const World& world, Places places) {
+    count_hits(world, rows, places, out);
   });
   return result;
 }
@@ -211,7 +272,7 @@ rays: shape (..., 6), origin and direction of each ray in a row. A hit is at ori
     in place, anything else is copied. The origin of a scene is taken off in float64 before.
 tmin, tmax: a number for all rays, or one for each, shape (...). tmin >= 0.
 fields: what is wanted. The others are None in the result.
-mask: 32 bits; rays meet objects that have one of them, see set_mask.
+mask: 32 bits for all rays, or for each, shape (...); they meet objects that have one of them, see set_mask.
 
 Returns Hits:
     t          float32 (...)     distance; inf for a miss
@@ -233,8 +294,8 @@ primitive) counts, of those with meshes that were added the lowest (object, prim
 
 constexpr const char* kAllHitsDoc = R"(Every hit of each ray, nearest first.
 
-A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields,
-mask and errors are those of closest_hit.
+A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields
+and errors are those of closest_hit; mask is one for all rays.
 
 Returns HitLists: the fields of Hits, with the hits of ray 0 first, then those of ray 1, and so on; and
     splits     int64 (rays + 1,)  the hits of ray i are splits[i] to splits[i + 1] - 1)";

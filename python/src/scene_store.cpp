@@ -327,9 +327,17 @@ void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
 
 // ---- The structure.
 
+std::uint32_t SceneStore::least_mask(std::uint32_t mask) const {
+  std::uint32_t told_apart = 0;
+  for (const ObjectState& state : states_)
+    if (state.mask != ~0u) told_apart |= state.mask;
+  const std::uint32_t others = ~told_apart & mask;
+  return (mask & told_apart) | (others & -others);
+}
+
 std::shared_ptr<const PlacedWorld> SceneStore::built_world(std::uint32_t mask) const {
   const std::lock_guard lock(mutex_);
-  const auto found = worlds_.find(mask);
+  const auto found = worlds_.find(least_mask(mask));
   return found != worlds_.end() ? found->second : nullptr;
 }
 
@@ -384,6 +392,7 @@ std::shared_ptr<const PlacedWorld> SceneStore::world(std::uint32_t mask) {
   std::uint64_t changes;
   {
     const std::lock_guard lock(mutex_);
+    mask = least_mask(mask);
     if (const auto found = worlds_.find(mask); found != worlds_.end()) return found->second;
     scene = shown_scene(), changes = changes_;
   }

@@ -144,6 +144,8 @@ class SceneStore {
   void place(const AddedMesh& added, Object& object) const;
   /// With a positions of its own, as it is after a change. Nothing if no new centre has to be found.
   std::shared_ptr<const TriangleMesh> replaced(const AddedMesh& added, const MeshChange& change) const;
+  /// One of the masks that see the same as this one: the same for all of them.
+  std::uint32_t least_mask(std::uint32_t mask) const;
   void note_change(std::size_t object);
   /// Without what is not shown.
   Scene shown_scene() const;

@@ -158,6 +158,24 @@ def test_masks_tell_what_rays_meet():
     assert set(scene.all_hits(ray, mask=2).object) == {cube, far}
     copy = pickle.loads(pickle.dumps(scene))
     assert copy.closest_hit(ray, mask=2).object[0] == cube
+    # One for each ray.
+    rays = np.repeat(np.reshape(random_rays(3000, 4.0, seed=2), (3000, 1, 6)), 2, axis=1)
+    masks = np.random.default_rng(1).integers(0, 8, size=(3000, 2))
+    hits, any_hit, counts = (
+        scene.closest_hit(rays, fields=["t", "object", "primitive"], mask=masks),
+        scene.any_hit(rays, mask=masks),
+        scene.count_hits(rays, mask=masks.astype(np.uint32)),
+    )
+    for mask in range(8):
+        own = masks == mask
+        for name in ("t", "object", "primitive"):
+            alone = getattr(scene.closest_hit(rays, fields=[name], mask=mask), name)
+            np.testing.assert_array_equal(getattr(hits, name)[own], alone[own])
+        np.testing.assert_array_equal(any_hit[own], scene.any_hit(rays, mask=mask)[own])
+        np.testing.assert_array_equal(counts[own], scene.count_hits(rays, mask=mask)[own])
+    for wrong in (-1, 2**32, 1.5, masks[:5], masks * 1.0):
+        with pytest.raises((ValueError, TypeError), match="mask"):
+            scene.any_hit(rays, mask=wrong)
     with pytest.raises(ValueError, match="was read: only meshes that were added have masks"):
         scene.set_mask(cube, 1)
 

@@ -261,6 +261,23 @@ class Changes {
     }
   }
 
+  /// Rays with masks of their own meet what they meet in the structures for these masks.
+  void look_through_masks(const RayBatch& rays) {
+    std::vector<std::uint32_t> masks;
+    for (std::size_t i = 0; i < rays.size(); ++i) masks.push_back(draw_mask());
+    HitBatch hits;
+    hits.resize_uninitialized(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    closest_hit(dynamic_, rays, masks, hits.span(), isas_.back());
+    any_hit(dynamic_, rays, masks, occluded, isas_.back());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit expected = closest_hit(*dynamic_.accel(masks[i]), rays[i], Isa::scalar);
+      if (!same_bits(hits[i], expected) || (occluded[i] != 0) != expected.valid())
+        return fail(tally_.differing, fmt::format("with a mask {} of its own it differs; ray {}", masks[i],
+                                                  exact_text(rays[i])));
+    }
+  }
+
   void look() {
     const RayBatch rays = draw_rays();
     const std::shared_ptr<const Accel> fresh = afresh(), now = dynamic_.accel();
@@ -277,6 +294,7 @@ class Changes {
         fail(tally_.differing, "all hits differ from those in a fresh structure; ray " + exact_text(rays[i]));
     }
     if (tally_.wrong() == 0) look_through_mask(rays);
+    if (tally_.wrong() == 0) look_through_masks(rays);
     if (kept_) compare(*kept_->accel, kept_->rays, kept_->hits, tally_.altered, "what it was");
     // Others are dropped, so that trees are changed in their place.
     if (random_.unit() < 0.3) kept_ = Kept{now, rays, std::move(hits)};
