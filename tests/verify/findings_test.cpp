@@ -144,7 +144,7 @@ TEST(Findings, WhatIsRightIsNotMinimized) {
 /// Every check can be named in a file and is run again.
 TEST(Findings, EveryCheckIsRepeated) {
   for (const char* check : {"kernel sphere_geometric far 123456789", "surface torus 77", "combination 12",
-                            "scene 5", "mesh cube 1 100 64"}) {
+                            "changes 12", "scene 5", "mesh cube 1 100 64"}) {
     Finding finding{"", check, {}, {}};
     EXPECT_TRUE(replay(finding, available_isas()).empty()) << check;
   }

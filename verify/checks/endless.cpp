@@ -29,6 +29,7 @@ class Endless {
                       {"scenes", "kinds of shapes", 0, known_kinds().size()},
                       {"surfaces", "exact surfaces", 0, exact_oracle_names().size()},
                       {"combinations", "trees of any shape", 0, 1},
+                      {"changes", "sequences of any kind", 0, 1},
                       {"meshes", "meshes x placements", 0, meshes_.size() * mesh_placements().size()},
                       {"roots", "degrees", 0, kKnownRootsDegree}};
     for (std::size_t k = 0; k < coverage_.rows.size(); ++k)
@@ -39,7 +40,8 @@ class Endless {
     while (in_time()) {
       const std::uint64_t size = std::uint64_t{1} << std::min(coverage_.rounds, kLargestRound);
       const bool complete = kernels(2048 * size) && scenes(8 * size) && surfaces(512 * size) &&
-                            combinations(4 * size) && meshes(512 * size) && roots(512 * size);
+                            combinations(4 * size) && changes(4 * size) && meshes(512 * size) &&
+                            roots(512 * size);
       coverage_.rounds += complete;
     }
     coverage_.seconds = seconds();
@@ -47,7 +49,15 @@ class Endless {
   }
 
  private:
-  enum Family : std::size_t { kKernelRow, kSceneRow, kSurfaceRow, kCombinationRow, kMeshRow, kRootsRow };
+  enum Family : std::size_t {
+    kKernelRow,
+    kSceneRow,
+    kSurfaceRow,
+    kCombinationRow,
+    kChangesRow,
+    kMeshRow,
+    kRootsRow
+  };
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool in_time() const { return seconds() < options_.seconds; }
@@ -99,6 +109,14 @@ class Endless {
     const CsgTally t = verify_csg(trees * kRaysPerTree, options_.isas, take(kCombinationRow, trees));
     count(kCombinationRow, {"trees"}, trees, t.rays);
     if (!t.failure.empty()) found(kCombinationRow, "", [&] { return finding_of(t); });
+    return true;
+  }
+
+  bool changes(std::uint64_t sequences) {
+    if (!in_time()) return false;
+    const ChangesTally t = verify_changes(sequences, options_.isas, take(kChangesRow, sequences));
+    count(kChangesRow, {"sequences"}, sequences, t.rays);
+    if (!t.failure.empty()) found(kChangesRow, "", [&] { return finding_of(t); });
     return true;
   }
 
@@ -165,7 +183,7 @@ class Endless {
   double next_report_ = 60;
   Coverage coverage_;
   std::vector<std::uint64_t> next_;
-  std::set<std::string> seen_[6];
+  std::set<std::string> seen_[7];
   std::set<std::string> known_;
 };
 

@@ -205,6 +205,8 @@ std::string repeated(const std::string& repeat, const std::vector<Isa>& isas) {
       return verify_exact(static_cast<std::size_t>(form - names.begin()), kOneTrial, isas, first).failure;
   } else if (check == "combination" && words >> first) {
     return verify_csg(kOneTrial, isas, first).failure;
+  } else if (check == "changes" && words >> first) {
+    return verify_changes(1, isas, first).failure;
   } else if (check == "scene" && words >> first) {
     return verify_scenes(1, isas, first).failure;
   } else if (check == "roots" && words >> degree >> first && degree >= 1 && degree <= kKnownRootsDegree) {
@@ -240,6 +242,10 @@ Finding finding_of(std::size_t form, const ExactTally& tally) {
 
 Finding finding_of(const CsgTally& tally) {
   return with_ray(tally.failure, fmt::format("combination {}", tally.tree));
+}
+
+Finding finding_of(const ChangesTally& tally) {
+  return with_ray(tally.failure, fmt::format("changes {}", tally.sequence));
 }
 
 Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t first, std::uint64_t count,

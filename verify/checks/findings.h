@@ -7,6 +7,7 @@
 #include "core/isa.h"
 #include "core/ray.h"
 #include "render/scene.h"
+#include "verify/checks/changes.h"
 #include "verify/checks/csg.h"
 #include "verify/checks/exact.h"
 #include "verify/checks/kernels.h"
@@ -26,6 +27,7 @@ struct Finding {
 Finding finding_of(KernelId id, CaseClass c, const KernelTally& tally);
 Finding finding_of(std::size_t form, const ExactTally& tally);
 Finding finding_of(const CsgTally& tally);
+Finding finding_of(const ChangesTally& tally);
 /// `placement` is an index into mesh_placements(); `count` rays from number `first` on were checked.
 Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t first, std::uint64_t count,
                    const MeshTally& tally);
