@@ -60,7 +60,7 @@ class DynamicAccel {
   void set_vertices(std::uint32_t number, std::span<const Vec3f> positions, std::size_t first = 0,
                     std::span<const Vec3f> normals = {});
 
-  /// The geometry as it is; of a mesh the positions, too.
+  /// The geometry as it is; of a mesh the positions, too. It, and its mesh, last until this geometry changes.
   const Geometry& geometry(std::uint32_t number) const;
   /// A mesh as it is, if it was added as one that is kept alive here or has changed since; else null. While
   /// somebody holds it, a change makes a copy.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/build/mesh_source.h"
+#include "accel/build/refit.h"
 #include "accel/build/tree_store.h"
 #include "accel/build/wide_tree.h"
 #include "accel/closest.h"
@@ -219,13 +220,8 @@ Geometry as_instance(Geometry g) {
 }
 
 void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
-  for (Geometry& g : geometries) {
-    bool needs_similarity = false;
-    visit_closed_form(g.shape,
-                      [&]<class S>(S, Kind, const auto&) { needs_similarity = S::kNeedsSimilarity; });
-    if (needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0)
-      g = as_instance(std::move(g));
-  }
+  for (Geometry& g : geometries)
+    if (is_wrapped(g)) g = as_instance(std::move(g));
 }
 
 /// An entry of the list beside the tree, which every ray is tested against: the next item of its kind.
@@ -419,6 +415,12 @@ double sah_cost(const Accel& accel) {
 }
 
 }  // namespace
+
+bool is_wrapped(const Geometry& g) {
+  bool needs_similarity = false;
+  visit_closed_form(g.shape, [&]<class S>(S, Kind, const auto&) { needs_similarity = S::kNeedsSimilarity; });
+  return needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0;
+}
 
 PointAnswers::PointAnswers() = default;
 PointAnswers::~PointAnswers() = default;

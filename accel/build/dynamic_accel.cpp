@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -43,10 +44,10 @@ struct DynamicAccel::Entry {
   }
 };
 
-/// Whether nobody else holds what `pointer` points to, nor still reads it in another thread.
+/// Whether nobody but so many owners holds what `pointer` points to, nor still reads it in another thread.
 template <class T>
-static bool is_unshared(const std::shared_ptr<T>& pointer) {
-  if (pointer.use_count() > 1) return false;
+static bool is_unshared(const std::shared_ptr<T>& pointer, long owners = 1) {
+  if (pointer.use_count() > owners) return false;
   std::atomic_thread_fence(std::memory_order_acquire);
   return true;
 }
@@ -66,7 +67,7 @@ struct DynamicAccel::Snapshot {
   double built_cost = 0;             ///< of the tree when it was built
 };
 
-DynamicAccel::DynamicAccel(const BuildOptions& options) : options_(options) {}
+DynamicAccel::DynamicAccel(const BuildOptions& options) : options_(options) { options_.mask = ~0u; }
 DynamicAccel::~DynamicAccel() = default;
 
 // ---- Changes.
@@ -88,12 +89,22 @@ void DynamicAccel::replace(std::uint32_t number, Geometry geometry) {
   auto entry = std::make_unique<Entry>();
   entry->geometry = std::move(geometry), entry->enabled = entries_[number]->enabled;
   entry->inverse = entry->geometry.transform.inverse();
+  // The same mesh is kept alive on.
+  const auto* const shape = std::get_if<MeshGeometry>(&entry->geometry.shape);
+  if (shape != nullptr && shape->mesh == entries_[number]->mesh.get()) entry->mesh = entries_[number]->mesh;
   entries_[number] = std::move(entry);
   snapshots_.clear();
 }
 
+/// Makes `mesh` that of the geometry. Throws Error if it is of another kind, or without a mesh.
+static void set_mesh(const std::shared_ptr<const TriangleMesh>& mesh, Geometry& geometry) {
+  auto* const shape = std::get_if<MeshGeometry>(&geometry.shape);
+  if (shape == nullptr || mesh == nullptr) throw Error("expected a mesh and a geometry that is one");
+  shape->mesh = mesh.get();
+}
+
 std::uint32_t DynamicAccel::add(std::shared_ptr<const TriangleMesh> mesh, Geometry geometry) {
-  std::get<MeshGeometry>(geometry.shape).mesh = mesh.get();
+  set_mesh(mesh, geometry);
   const std::uint32_t number = add(std::move(geometry));
   entries_.back()->mesh = std::move(mesh);
   return number;
@@ -101,7 +112,7 @@ std::uint32_t DynamicAccel::add(std::shared_ptr<const TriangleMesh> mesh, Geomet
 
 void DynamicAccel::replace(std::uint32_t number, std::shared_ptr<const TriangleMesh> mesh,
                            Geometry geometry) {
-  std::get<MeshGeometry>(geometry.shape).mesh = mesh.get();
+  set_mesh(mesh, geometry);
   replace(number, std::move(geometry));
   entries_[number]->mesh = std::move(mesh);
 }
@@ -158,14 +169,18 @@ void DynamicAccel::set_vertices(std::uint32_t number, std::span<const Vec3f> pos
   check(shape->mesh->positions.size(), positions.size(), "vertices");
   if (!normals.empty()) check(shape->mesh->normals.size(), normals.size(), "normals");
   snapshots_.clear();
-  // A structure that somebody still holds refers to the mesh as it was.
-  if (entry.changed == nullptr || entry.changed.use_count() > 2) {
+  // What is given may be the mesh's own.
+  const std::shared_ptr<const TriangleMesh> before = entry.mesh;
+  // A structure that somebody still holds refers to the mesh as it was. Three hold it here.
+  if (entry.changed == nullptr || !is_unshared(entry.changed, 3)) {
     entry.changed = std::make_shared<TriangleMesh>(*shape->mesh);
     entry.mesh = entry.changed;
     shape->mesh = entry.changed.get();
   }
-  std::ranges::copy(positions, entry.changed->positions.begin() + first);
-  std::ranges::copy(normals, entry.changed->normals.begin() + first);
+  const auto write = [&](std::span<const Vec3f> from, Column<Vec3f>& to) {
+    if (!from.empty()) std::memmove(to.data() + first, from.data(), from.size_bytes());
+  };
+  write(positions, entry.changed->positions), write(normals, entry.changed->normals);
   if (entry.stale == Entry::Stale::none) entry.stale = Entry::Stale::positions;
 }
 
@@ -191,7 +206,7 @@ void DynamicAccel::update(Entry& entry) {
   // Until there is a tree again.
   entry.stale = Entry::Stale::all;
   if (moves && entry.plan == nullptr)
-    entry.plan = std::make_unique<const RefitPlan>(*entry.tree, *entry.changed);
+    entry.plan = std::make_unique<const RefitPlan>(*entry.tree, *entry.changed, options_.parallel);
   if (moves && entry.plan->is_possible()) {
     if (!is_unshared(entry.tree)) entry.tree = clone_tree(*entry.tree);
     std::get<MeshGeometry>(entry.tree->geometries[0].shape).mesh = entry.changed.get();
@@ -259,8 +274,7 @@ std::shared_ptr<DynamicAccel::Snapshot> DynamicAccel::snapshot_of(std::uint32_t 
 bool DynamicAccel::move(Snapshot& snapshot, std::uint32_t mask) const {
   std::vector<Placement> places;
   places.reserve(entries_.size());
-  // One that is alone, has a tree and is not moved is that tree itself.
-  bool is_alone = false;
+  bool is_tree = false;  // the last one has a tree and is not moved
   for (const auto& entry : entries_) {
     if (entry == nullptr || !entry->enabled) continue;
     if (snapshot.accel == entry->tree) return false;
@@ -269,11 +283,15 @@ bool DynamicAccel::move(Snapshot& snapshot, std::uint32_t mask) const {
     const bool is_instance =
         entry->has_tree() || std::holds_alternative<InstanceGeometry>(entry->geometry.shape);
     if (is_seen && !is_instance && !(before.transform == entry->geometry.transform)) return false;
+    // Also what is not seen is numbered.
+    if (!is_instance && std::holds_alternative<InstanceGeometry>(before.shape) != is_wrapped(entry->geometry))
+      return false;
     places.push_back(is_seen && is_instance ? Placement{&entry->geometry.transform, &entry->inverse}
                                             : Placement{});
-    is_alone = entry->has_tree() && entry->geometry.transform.is_identity();
+    is_tree = entry->has_tree() && entry->geometry.transform.is_identity();
   }
-  if (places.size() == 1 && is_alone) return false;
+  // One that is alone is its tree itself.
+  if (places.size() == 1 && is_tree) return false;
   // Nobody else sees it.
   Accel& accel = const_cast<Accel&>(*snapshot.accel);
   return move_instances(accel, places, options_.parallel) &&
@@ -283,10 +301,19 @@ bool DynamicAccel::move(Snapshot& snapshot, std::uint32_t mask) const {
 std::shared_ptr<const Accel> DynamicAccel::accel() { return accel(~0u); }
 
 std::shared_ptr<const Accel> DynamicAccel::accel(std::uint32_t mask) {
-  if (std::exchange(moved_, false) && !snapshots_.empty()) {
-    const auto& [of_mask, snapshot] = *snapshots_.begin();
-    if (snapshots_.size() > 1 || !is_unshared(snapshot) || !move(*snapshot, of_mask)) snapshots_.clear();
+  if (std::exchange(moved_, false)) {
+    // None is left if this throws.
+    auto kept = std::exchange(snapshots_, {});
+    if (kept.size() == 1 && is_unshared(kept.begin()->second) &&
+        move(*kept.begin()->second, kept.begin()->first))
+      snapshots_ = std::move(kept);
   }
+  // Bits that no geometry has tell nothing apart.
+  std::uint32_t used = 0;
+  for (const auto& entry : entries_)
+    if (entry != nullptr && entry->enabled && entry->geometry.mask != ~0u) used |= entry->geometry.mask;
+  const std::uint32_t others = mask & ~used;
+  mask = (mask & used) | (others & -others);
   if (snapshots_.empty()) update();
   auto found = snapshots_.find(mask);
   if (found == snapshots_.end()) found = snapshots_.emplace(mask, snapshot_of(mask)).first;

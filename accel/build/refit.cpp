@@ -185,12 +185,12 @@ VirtualArray<T> copy_of(const VirtualArray<T>& from, std::size_t size) {
 
 }  // namespace
 
-RefitPlan::RefitPlan(const Accel& accel, const TriangleMesh& mesh) {
+RefitPlan::RefitPlan(const Accel& accel, const TriangleMesh& mesh, bool parallel) {
   const std::size_t blocks = block_count(accel);
   if (accel.pieces || accel.root.is_none()) return;
   vertices_.resize_uninitialized(blocks * TriangleBlock::kCorners);
   std::atomic<std::size_t> triangles = 0;
-  in_parts(blocks, 4096, [&](std::size_t begin, std::size_t end) {
+  Chunks(blocks, 4096).each(parallel, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t b = begin; b < end; ++b)
       count += note(accel.blocks[b], mesh, &vertices_[b * TriangleBlock::kCorners]);
@@ -213,7 +213,7 @@ bool move_instances(Accel& accel, const std::vector<Placement>& places, bool par
   for (const InstanceItem& instance : accel.instances)
     moved += is_moved(places[accel.geometry_of(instance.item)]);
   if (moved != std::ranges::count_if(places, is_moved)) return false;
-  in_parts(accel.instances.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  Chunks(accel.instances.size(), 1024).each(parallel, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t g = accel.geometry_of(accel.instances[k].item);
       if (!is_moved(places[g])) continue;

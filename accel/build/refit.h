@@ -10,7 +10,7 @@ class RefitPlan {
  public:
   /// Of a structure that holds one mesh, which no transform moves, with the indices of `mesh`. Neither is
   /// kept.
-  RefitPlan(const Accel& accel, const TriangleMesh& mesh);
+  RefitPlan(const Accel& accel, const TriangleMesh& mesh, bool parallel);
 
   /// Whether the tree can be refitted: all triangles of the mesh stand in it, each once.
   bool is_possible() const { return is_possible_; }
@@ -27,10 +27,14 @@ class RefitPlan {
 };
 
 /// Fits the tree to the positions that the mesh has now: corners of triangles, boxes, bounds and the stats.
-/// `plan` is that of this tree, or of one that it was cloned from, and possible. Returns false, and then the
+/// `plan` is that of this tree, or of one that it was cloned from, and possible; blocks whose corners a refit
+/// numbers anew have none. Returns false, and then the
 /// structure must not be used any more, if the tree cannot hold these triangles: one is not finite, or
 /// corners of a block that lay at one place are too many apart.
 bool refit(Accel& accel, const RefitPlan& plan, bool parallel);
+
+/// Whether build_accel puts an instance in the place of the geometry, since its transform distorts it.
+bool is_wrapped(const Geometry& geometry);
 
 /// A transform and its inverse; null: none.
 struct Placement {

@@ -103,6 +103,33 @@ TEST(DynamicAccel, WhatMasksLeaveOutKeepsTheNumbersOfTheOthers) {
   EXPECT_EQ(closest_hit(*scene.accel(), along_x()).t, hit.t);
 }
 
+// A sphere that is stretched is an instance, which is numbered, also where it is hidden and no longer
+// stretched.
+TEST(DynamicAccel, WhatIsHiddenAndStretchedNoMoreLosesItsNumber) {
+  DynamicAccel scene;
+  const std::uint32_t egg = scene.add({SpheresShape{{SphereShape{}}}, Affine::scaling({1, 2, 3}), kNoId, 1});
+  const std::uint32_t near = scene.add(ball(), a_mesh(Affine::translation({3, 0, 0})));
+  scene.add(ball(), a_mesh(Affine::translation({9, 0, 0})));
+  scene.accel(2);
+  scene.set_transform(egg, {});
+  const Hit hit = closest_hit(*scene.accel(2), along_x());
+  EXPECT_EQ(identify(*scene.accel(), hit).user, near);
+}
+
+TEST(DynamicAccel, AMeshOfItsOwnMayBeGivenAgain) {
+  DynamicAccel scene;
+  const std::uint32_t number = scene.add(ball(), a_mesh());
+  Geometry flat = scene.geometry(number);
+  std::get<MeshGeometry>(flat.shape).smooth = false;
+  scene.replace(number, flat);
+  const float t = closest_hit(*scene.accel(), along_x()).t;
+  const TriangleMesh& mesh = *std::get<MeshGeometry>(scene.geometry(number).shape).mesh;
+  scene.set_vertices(number, {mesh.positions.data(), mesh.positions.size()});
+  EXPECT_EQ(closest_hit(*scene.accel(), along_x()).t, t);
+  EXPECT_THROW(scene.add(ball(), {BoxShape{}, {}, kNoId}), Error);
+  EXPECT_THROW(scene.add(nullptr, a_mesh()), Error);
+}
+
 TEST(DynamicAccel, StructuresThatWereTakenStayAsTheyWere) {
   DynamicAccel scene;
   const auto mesh = ball();

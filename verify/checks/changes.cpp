@@ -293,8 +293,9 @@ class Changes {
       if (!std::ranges::equal(all, others, [](const Hit& a, const Hit& b) { return same_bits(a, b); }))
         fail(tally_.differing, "all hits differ from those in a fresh structure; ray " + exact_text(rays[i]));
     }
-    if (tally_.wrong() == 0) look_through_mask(rays);
-    if (tally_.wrong() == 0) look_through_masks(rays);
+    // Structures for several masks are never refitted where geometries move, one alone is.
+    if (tally_.wrong() == 0 && random_.unit() < 0.4) look_through_mask(rays);
+    if (tally_.wrong() == 0 && random_.unit() < 0.2) look_through_masks(rays);
     if (kept_) compare(*kept_->accel, kept_->rays, kept_->hits, tally_.altered, "what it was");
     // Others are dropped, so that trees are changed in their place.
     if (random_.unit() < 0.3) kept_ = Kept{now, rays, std::move(hits)};
