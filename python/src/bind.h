@@ -24,6 +24,9 @@ void bind_point_queries(SceneClass& scene);
 /// The structure of a scene for rays with a mask, built without the interpreter's lock if that is still to be
 /// done.
 std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene, std::uint32_t mask = ~0u);
+/// Those for rays with each of these masks, of one state of the scene.
+std::vector<std::shared_ptr<const PlacedWorld>> worlds_of(SceneStore& scene,
+                                                          const std::vector<std::uint32_t>& masks);
 /// Warns, through Python, of objects so far away from others that rays lose their details (find_lost_digits);
 /// each text once.
 void say_lost_digits(SceneStore& scene, const std::vector<Warning>& lost);

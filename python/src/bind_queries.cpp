@@ -77,15 +77,18 @@ class RayMasks {
     if ((kind != 'u' && kind != 'i') || row_shape_of(array) != shape)
       throw py::value_error("mask: expected a number of 32 bits, or an array of them of shape " +
                             text_of(shape));
-    each_ = dense<std::uint32_t>(array);
-    std::map<std::uint32_t, std::uint32_t> index;
-    for (py::ssize_t i = 0; i < each_.size(); ++i) {
-      const auto [found, is_new] =
-          index.try_emplace(each_.data()[i], static_cast<std::uint32_t>(worlds_.size()));
-      if (is_new) worlds_.push_back(world_of(scene, found->first));
+    const auto each = dense<std::int64_t>(array);
+    std::map<std::int64_t, std::uint32_t> index;
+    std::vector<std::uint32_t> masks;
+    for (py::ssize_t i = 0; i < each.size(); ++i) {
+      const std::int64_t mask = each.data()[i];
+      if (mask < 0 || mask > std::int64_t{~0u}) throw py::value_error("mask: expected numbers of 32 bits");
+      const auto [found, is_new] = index.try_emplace(mask, static_cast<std::uint32_t>(masks.size()));
+      if (is_new) masks.push_back(static_cast<std::uint32_t>(mask));
       index_.push_back(found->second);
     }
-    if (worlds_.empty()) worlds_.push_back(world_of(scene));
+    if (masks.empty()) masks.push_back(~0u);
+    worlds_ = worlds_of(scene, masks);
   }
 
   /// One of the worlds, which differ in what rays meet alone.
@@ -117,7 +120,6 @@ class RayMasks {
 
   std::vector<std::shared_ptr<const PlacedWorld>> worlds_;
   std::vector<std::uint32_t> index_;  ///< of each ray: its world; empty if there is one
-  py::array_t<std::uint32_t, py::array::c_style> each_;
 };
 
 RayOrder picture_order(const RayRows& rays) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,13 +126,26 @@ StorePointer from_dict(const py::object& description, const std::string& name, c
   return from_text(text, name, all, definitions, quality);
 }
 
+/// Calls change() without the interpreter's lock: it may wait for a build.
+template <class Change>
+void unlocked(const Change& change) {
+  const py::gil_scoped_release released;
+  change();
+}
+
+std::unique_lock<std::mutex> held_without_lock(SceneStore& scene) {
+  const py::gil_scoped_release released;
+  return scene.hold();
+}
+
 py::array matrix_of(const Affine& transform) {
   DoubleArray matrix(ArrayShape{3, 4});
   transform.to_rows(matrix.mutable_data());
   return matrix;
 }
 
-py::tuple pickled(const SceneStore& scene) {
+py::tuple pickled(SceneStore& scene) {
+  const std::unique_lock<std::mutex> held = held_without_lock(scene);
   py::dict files;
   for (const auto& [path, content] : scene.contents()) files[py::str(path)] = py::bytes(content);
   py::list meshes;
@@ -139,8 +153,8 @@ py::tuple pickled(const SceneStore& scene) {
     py::dict material;
     for (const auto& [path, content] : added.material_contents())
       material[py::str(path)] = py::bytes(content);
-    meshes.append(py::make_tuple(columns_of(*added.mesh), matrix_of(added.transform), added.name,
-                                 added.material_name, material));
+    meshes.append(py::make_tuple(columns_of(added.mesh != nullptr ? *added.mesh : TriangleMesh{}),
+                                 matrix_of(added.transform), added.name, added.material_name, material));
   }
   py::list changes;
   for (const SceneStore::Change& change : scene.changes()) {
@@ -292,7 +306,8 @@ void bind_changes(SceneClass& scene) {
   scene.def(
       "set_transform",
       [](SceneStore& s, std::uint32_t object, const py::object& transform) {
-        s.set_transform(object, parse_transform(transform));
+        const Affine matrix = parse_transform(transform);
+        unlocked([&] { s.set_transform(object, matrix); });
       },
       "object"_a, "transform"_a,
       R"(Moves an object.
@@ -305,7 +320,10 @@ combinations, which have no transform of the scene, and for objects that move by
   scene.def(
       "set_vertices",
       [](SceneStore& s, std::uint32_t object, const py::object& vertices, std::size_t first,
-         const py::object& normals) { s.set_vertices(object, make_change(vertices, first, normals)); },
+         const py::object& normals) {
+        const MeshChange change = make_change(vertices, first, normals);
+        unlocked([&] { s.set_vertices(object, change); });
+      },
       "object"_a, "vertices"_a, "first"_a = 0, py::kw_only(), "normals"_a = py::none(),
       R"(Moves vertices of a mesh that was added.
 
@@ -315,16 +333,22 @@ normals: shape (n, 3), of the same vertices, if the mesh has normals of vertices
 Faces and all else stay. The tree of the mesh is fitted to the new places; it is built anew by a later query
 when rays would take 1.5 times as many steps as through the one that was built last.)");
   scene.def(
-      "enable", [](SceneStore& s, std::uint32_t object) { s.set_enabled(object, true); }, "object"_a,
-      "Shows an object again that was disabled.");
+      "enable", [](SceneStore& s, std::uint32_t object) { unlocked([&] { s.set_enabled(object, true); }); },
+      "object"_a, "Shows an object again that was disabled.");
   scene.def(
-      "disable", [](SceneStore& s, std::uint32_t object) { s.set_enabled(object, false); }, "object"_a,
-      "Hides an object from rays, points and pictures.");
-  scene.def("remove", &SceneStore::remove, "object"_a,
-            "Removes an object for good. The numbers of the others, and its name, stay.");
-  scene.def("set_mask", &SceneStore::set_mask, "object"_a, "mask"_a,
-            "Gives a mesh that was added 32 bits. Queries with a mask meet it if both have a bit in common; "
-            "it begins with all.");
+      "disable", [](SceneStore& s, std::uint32_t object) { unlocked([&] { s.set_enabled(object, false); }); },
+      "object"_a, "Hides an object from rays, points and pictures.");
+  scene.def(
+      "remove", [](SceneStore& s, std::uint32_t object) { unlocked([&] { s.remove(object); }); }, "object"_a,
+      "Removes an object for good. The numbers of the others, and its name, stay.");
+  scene.def(
+      "set_mask",
+      [](SceneStore& s, std::uint32_t object, std::uint32_t mask) {
+        unlocked([&] { s.set_mask(object, mask); });
+      },
+      "object"_a, "mask"_a,
+      "Gives a mesh that was added 32 bits. Queries with a mask meet it if both have a bit in common; "
+      "it begins with all.");
 }
 
 }  // namespace
@@ -332,6 +356,14 @@ when rays would take 1.5 times as many steps as through the one that was built l
 const Files& files() {
   const py::capsule entry = py::module_::import("oktett._files").attr(kFilesEntry);
   return *entry.get_pointer<const Files>();
+}
+
+std::vector<std::shared_ptr<const PlacedWorld>> worlds_of(SceneStore& scene,
+                                                          const std::vector<std::uint32_t>& masks) {
+  std::vector<std::shared_ptr<const PlacedWorld>> worlds;
+  run_watched([&] { worlds = scene.worlds(masks); });
+  for (const auto& world : worlds) say_lost_digits(scene, world->lost_digits);
+  return worlds;
 }
 
 std::shared_ptr<const PlacedWorld> world_of(SceneStore& scene, std::uint32_t mask) {

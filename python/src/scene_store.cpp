@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -209,6 +210,25 @@ void SceneStore::note_change(std::size_t object) {
   if (object < read_objects_) ++read_changes_;
 }
 
+/// Whether a mesh among the objects, or in their operands, counts from a place of its own.
+static bool hold_far_meshes(std::span<const Object> objects) {
+  return std::ranges::any_of(objects, [](const Object& object) {
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (mesh != nullptr) return mesh->mesh != nullptr && !(mesh->mesh->origin == Vec3d{});
+    const auto* const csg = std::get_if<CsgShape>(&object.shape);
+    return csg != nullptr && hold_far_meshes(*csg->operands);
+  });
+}
+
+bool SceneStore::is_shifted(const Object& object) const {
+  if (std::holds_alternative<CsgShape>(object.shape))
+    return !(scene_.origin == Vec3d{}) || hold_far_meshes({&object, 1});
+  if (!std::holds_alternative<InstanceShape>(object.shape)) return false;
+  return !(scene_.origin == Vec3d{}) ||
+         std::ranges::any_of(scene_.prototypes,
+                             [](const Prototype& prototype) { return hold_far_meshes(prototype.objects); });
+}
+
 void SceneStore::set_transform(std::uint32_t number, const Affine& transform) {
   const std::lock_guard build(building_);
   const std::lock_guard lock(mutex_);
@@ -221,9 +241,10 @@ void SceneStore::set_transform(std::uint32_t number, const Affine& transform) {
   } else {
     if (object.motion != nullptr)
       throw Error("object " + std::to_string(number) + " moves by itself; its transform cannot be set");
-    if (!(scene_.origin == Vec3d{}) && std::holds_alternative<InstanceShape>(object.shape))
-      throw Error("object " + std::to_string(number) +
-                  " is an instance in a scene far from the origin; its transform cannot be set");
+    if (is_shifted(object))
+      throw Error(
+          "object " + std::to_string(number) +
+          " is a combination or an instance of what lies far from the origin; its transform cannot be set");
     object.transform = transform;
     place_mesh(object);
     object.transform = Affine::translation(scene_.origin * -1.0) * object.transform;
@@ -245,12 +266,17 @@ void SceneStore::remove(std::uint32_t number) {
   const std::size_t k = find(number);
   states_[k].removed = true;
   note_change(k);
+  if (k < read_objects_) return;
+  const std::size_t i = k - read_objects_;
+  if (i < in_top_.size() && in_top_[i] != kNoId) top_->remove(std::exchange(in_top_[i], kNoId));
+  added_[i].mesh = nullptr, scene_.objects[k].shape = MeshShape{};
 }
 
 void SceneStore::set_mask(std::uint32_t number, std::uint32_t mask) {
   const std::lock_guard build(building_);
   const std::lock_guard lock(mutex_);
   find_added(number, "masks");
+  if (mask == 0) throw Error("a mask needs at least one bit; a disabled object is met by no ray");
   for (const Object& object : scene_.objects)
     if (object.motion != nullptr) throw Error("scenes in which objects move by themselves have no masks");
   const std::size_t k = find(number);
@@ -258,31 +284,56 @@ void SceneStore::set_mask(std::uint32_t number, std::uint32_t mask) {
   note_change(k);
 }
 
+/// Whether each corner has the normal of its vertex, or none.
+static bool has_vertex_normals(const TriangleMesh& mesh) {
+  if (mesh.normals.size() != mesh.positions.size()) return false;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    if (mesh.normal_indices[i] != mesh.indices[i] && mesh.normal_indices[i] != kNoId) return false;
+  return true;
+}
+
+static bool is_normal(const Vec3f& n) {
+  const float square = dot(n, n);
+  return square > 0 && std::isfinite(square);
+}
+
 std::shared_ptr<const TriangleMesh> SceneStore::replaced(const AddedMesh& added,
                                                          const MeshChange& change) const {
   const TriangleMesh& mesh = *added.mesh;
   const std::size_t size = mesh.positions.size(), end = change.first + change.positions.size();
+  const auto is_given = [&](std::size_t i) { return i >= change.first && i < end; };
   const auto position = [&](std::size_t i) {
-    return i >= change.first && i < end ? change.positions[i - change.first]
-                                        : Vec3d(mesh.positions[i]) + mesh.origin;
+    return is_given(i) ? change.positions[i - change.first] : Vec3d(mesh.positions[i]) + mesh.origin;
   };
   // Of nearly all meshes a few tell that they are not far.
   std::vector<Vec3d> some;
   for (std::size_t i = 0; i < 16 && size > 0; ++i) some.push_back(position(i * (size - 1) / 15));
   const WideBox box = box_of_some(some);
-  if (mesh.origin == Vec3d{} && surely_near(box) && box.extent() > 0) return nullptr;
+  const bool is_near = mesh.origin == Vec3d{} && surely_near(box) && box.extent() > 0;
+  const bool some_lack_normals =
+      !change.normals.empty() &&
+      (std::ranges::count(mesh.normal_indices, kNoId) > 0 || !std::ranges::all_of(change.normals, is_normal));
+  if (is_near && !some_lack_normals) return nullptr;
   auto changed = std::make_shared<TriangleMesh>(mesh);
-  if (change.are_floats) {
+  std::vector<Vec3d> all;
+  all.reserve(size);
+  for (std::size_t i = 0; i < size; ++i) all.push_back(position(i));
+  // Those that stay may have digits that floats lack.
+  const bool are_floats = change.are_floats && std::ranges::all_of(all, [](const Vec3d& p) {
+                            return Vec3d(Vec3f(p)) == p || !is_finite(p);
+                          });
+  if (are_floats) {
     changed->origin = {};
-    for (std::size_t i = 0; i < size; ++i) changed->positions[i] = Vec3f(position(i));
+    for (std::size_t i = 0; i < size; ++i) changed->positions[i] = Vec3f(all[i]);
     if (const std::optional<Vec3d> centre = far_centre(changed->positions, true)) take_off(*centre, *changed);
   } else {
-    std::vector<Vec3d> all;
-    all.reserve(size);
-    for (std::size_t i = 0; i < size; ++i) all.push_back(position(i));
     set_positions(all, *changed);
   }
   std::ranges::copy(change.normals, changed->normals.begin() + change.first);
+  if (some_lack_normals)
+    for (std::size_t i = 0; i < changed->indices.size(); ++i)
+      changed->normal_indices[i] =
+          is_normal(changed->normals[changed->indices[i]]) ? changed->indices[i] : kNoId;
   return changed;
 }
 
@@ -295,7 +346,7 @@ void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
     throw Error("vertices: object " + std::to_string(number) + " has " + std::to_string(size) +
                 " vertices; " + std::to_string(change.positions.size()) + " from number " +
                 std::to_string(change.first) + " on were given");
-  if (!change.normals.empty() && added.mesh->normals.size() != size)
+  if (!change.normals.empty() && !has_vertex_normals(*added.mesh))
     throw Error("normals: object " + std::to_string(number) + " has no normals of vertices");
   std::shared_ptr<const TriangleMesh> mesh = replaced(added, change);
   const std::size_t i = k - read_objects_;
@@ -303,11 +354,17 @@ void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
   worlds_.clear();
   if (mesh == nullptr && stands) {
     // Nobody else may hold the mesh, or it would be copied.
-    added.mesh = nullptr, scene_.objects[k].shape = MeshShape{};
     std::vector<Vec3f> positions;
     positions.reserve(change.positions.size());
     for (const Vec3d& p : change.positions) positions.push_back(Vec3f(p));
-    top_->set_vertices(in_top_[i], positions, change.first, change.normals);
+    added.mesh = nullptr, scene_.objects[k].shape = MeshShape{};
+    try {
+      top_->set_vertices(in_top_[i], positions, change.first, change.normals);
+    } catch (...) {
+      added.mesh = top_->mesh(in_top_[i]);
+      place(added, scene_.objects[k]);
+      throw;
+    }
     mesh = top_->mesh(in_top_[i]);
   } else if (mesh == nullptr) {
     auto changed = std::make_shared<TriangleMesh>(*added.mesh);
@@ -315,6 +372,8 @@ void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
                            [](const Vec3d& p) { return Vec3f(p); });
     std::ranges::copy(change.normals, changed->normals.begin() + change.first);
     mesh = std::move(changed);
+  } else if (stands && mesh->origin == added.mesh->origin && change.normals.empty()) {
+    top_->set_vertices(in_top_[i], mesh->positions);
   } else if (stands) {
     Geometry geometry = top_->geometry(in_top_[i]);
     top_->replace(in_top_[i], mesh, std::move(geometry));
@@ -376,6 +435,10 @@ World SceneStore::build(const Scene& scene, std::uint32_t mask) {
   }
   for (std::size_t i = 0; i < added_.size(); ++i) {
     const std::size_t k = read_objects_ + i;
+    if (states_[k].removed) {
+      if (i == in_top_.size()) in_top_.push_back(kNoId);
+      continue;
+    }
     const Affine& transform = scene.objects[k].transform;
     if (i == in_top_.size())
       in_top_.push_back(top_->add(added_[i].mesh, {MeshGeometry{}, transform, numbers_[k]}));
@@ -388,6 +451,23 @@ World SceneStore::build(const Scene& scene, std::uint32_t mask) {
 
 std::shared_ptr<const PlacedWorld> SceneStore::world(std::uint32_t mask) {
   const std::lock_guard build_lock(building_);
+  return world_while_held(mask);
+}
+
+std::vector<std::shared_ptr<const PlacedWorld>> SceneStore::worlds(const std::vector<std::uint32_t>& masks) {
+  const std::lock_guard build_lock(building_);
+  std::set<std::uint32_t> different;
+  for (const std::uint32_t mask : masks) different.insert(least_mask(mask));
+  if (different.size() > kMostMasks)
+    throw Error("mask: " + std::to_string(different.size()) +
+                " masks that see different things; expected at most " + std::to_string(kMostMasks) +
+                " for one query");
+  std::vector<std::shared_ptr<const PlacedWorld>> all;
+  for (const std::uint32_t mask : masks) all.push_back(world_while_held(mask));
+  return all;
+}
+
+std::shared_ptr<const PlacedWorld> SceneStore::world_while_held(std::uint32_t mask) {
   Scene scene;
   std::uint64_t changes;
   {
@@ -400,6 +480,7 @@ std::shared_ptr<const PlacedWorld> SceneStore::world(std::uint32_t mask) {
   auto world = std::make_shared<const PlacedWorld>(
       PlacedWorld{build(scene, mask), scene.origin, find_lost_digits(scene)});
   const std::lock_guard lock(mutex_);
+  if (worlds_.size() >= 2 * kMostMasks) worlds_.clear();
   if (changes == changes_) worlds_[mask] = world;
   return world;
 }

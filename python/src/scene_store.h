@@ -90,6 +90,12 @@ class SceneStore {
 
   /// For rays with this mask. Waits while another thread builds.
   std::shared_ptr<const PlacedWorld> world(std::uint32_t mask = ~0u);
+  /// For rays with each of these masks, all of the same state of the scene. Throws Error if more than
+  /// kMostMasks of them see different things.
+  std::vector<std::shared_ptr<const PlacedWorld>> worlds(const std::vector<std::uint32_t>& masks);
+  static constexpr std::size_t kMostMasks = 64;
+  /// While it is held changes wait.
+  std::unique_lock<std::mutex> hold() { return std::unique_lock(building_); }
   /// Null if it has to be built. Never waits.
   std::shared_ptr<const PlacedWorld> built_world(std::uint32_t mask = ~0u) const;
   /// The images of the scene's textures, read by the first call; null if the scene was not read from files.
@@ -150,6 +156,9 @@ class SceneStore {
   /// Without what is not shown.
   Scene shown_scene() const;
   World build(const Scene& scene, std::uint32_t mask);
+  std::shared_ptr<const PlacedWorld> world_while_held(std::uint32_t mask);
+  /// Whether places of the object's own space are not those that it was described with.
+  bool is_shifted(const Object& object) const;
 
   std::mutex building_;  ///< held while textures are read or a structure is built; before mutex_
   /// The structure of the meshes that were added, and the numbers that they have in it; number 0 is an

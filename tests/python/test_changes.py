@@ -173,11 +173,43 @@ def test_masks_tell_what_rays_meet():
             np.testing.assert_array_equal(getattr(hits, name)[own], alone[own])
         np.testing.assert_array_equal(any_hit[own], scene.any_hit(rays, mask=mask)[own])
         np.testing.assert_array_equal(counts[own], scene.count_hits(rays, mask=mask)[own])
-    for wrong in (-1, 2**32, 1.5, masks[:5], masks * 1.0):
+    for wrong in (-1, 2**32, 1.5, masks[:5], masks * 1.0, masks - 9, masks + 2**32):
         with pytest.raises((ValueError, TypeError), match="mask"):
             scene.any_hit(rays, mask=wrong)
     with pytest.raises(ValueError, match="was read: only meshes that were added have masks"):
         scene.set_mask(cube, 1)
+
+
+def test_many_masks_that_see_different_things_are_refused():
+    vertices, faces = ball(0)
+    scene = oktett.Scene()
+    for k in range(8):
+        scene.set_mask(scene.add_mesh(vertices, faces, transform=moved(3 * k, 0, 0)), 1 << k)
+    rays = random_rays(256, 4.0, seed=1)
+    with pytest.raises(ValueError, match="256 masks that see different things; expected at most 64"):
+        scene.any_hit(rays, mask=np.arange(256))
+    assert scene.any_hit(rays, mask=np.arange(256) << 20).sum() == 0
+    with pytest.raises(ValueError, match="a mask needs at least one bit"):
+        scene.set_mask(0, 0)
+
+
+def test_what_counts_from_elsewhere_is_not_misplaced():
+    vertices, faces = ball(0)
+    far = np.array([1e6, 2e6, 300.0])
+    mesh = {"mesh": {"vertices": vertices + far, "faces": faces}}
+    scene = oktett.Scene.from_dict({"objects": [{"union": [mesh, {**mesh, "transform": [{"translate": [0, 0, 1]}]}],
+                                                 "name": "both"}]})  # fmt: skip
+    with pytest.raises(ValueError, match="is a combination or an instance of what lies far"):
+        scene.set_transform(scene.objects.index("both"), np.eye(4))
+    # The vertices that stay keep digits that floats lack.
+    place = np.array([432100.0, 5411000.0, 300.0])
+    small = vertices.astype(float) * 0.01 + place
+    scene = oktett.Scene(small, faces)
+    ray = [[place[0] + 0.001, place[1] + 0.002, place[2] + 3, 0, 0, -1]]
+    before = scene.closest_hit(ray).t
+    scene.set_vertices(0, small[:1].astype(np.float32))
+    scene.set_vertices(0, small[:1])
+    np.testing.assert_array_equal(scene.closest_hit(ray).t, before)
 
 
 def test_vertices_that_move_far_count_from_elsewhere():
@@ -205,6 +237,18 @@ def test_normals_move_with_vertices():
     a, b = scene.render(**picture), fresh.render(**picture)
     for name in picture["planes"]:
         np.testing.assert_array_equal(a[name], b[name])
+    # Some vertices have none, before or after.
+    lacking = np.where(np.arange(len(normals))[:, None] % 3 == 0, 0, normals)
+    for first, second in ((0 * normals, normals), (normals, lacking), (lacking, normals)):
+        scene = oktett.Scene(vertices, faces, normals=first)
+        scene.render(**picture)
+        scene.set_vertices(0, vertices, normals=second)
+        a, b = scene.render(**picture), oktett.Scene(vertices, faces, normals=second).render(**picture)
+        for name in picture["planes"]:
+            np.testing.assert_array_equal(a[name], b[name])
+    soup = vertices[np.ravel(faces)]
+    scene = oktett.Scene(soup, np.arange(len(soup)).reshape(-1, 3), normals=np.reshape(soup, (-1, 3, 3)))
+    scene.set_vertices(0, soup * 2, normals=soup)
 
 
 def test_wrong_changes_are_errors():
@@ -225,5 +269,6 @@ def test_wrong_changes_are_errors():
         with pytest.raises(ValueError, match=message):
             call()
     scene.remove(number)
+    assert len(pickle.dumps(scene)) < 10000
     with pytest.raises(ValueError, match=f"object {number} was removed"):
         scene.enable(number)
