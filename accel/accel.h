@@ -81,7 +81,8 @@ struct CsgExpression {
   std::vector<CsgExpression> children;  ///< of all others: what is combined, in order
 };
 
-/// How much work the builder does. The hits are the same bits for each.
+/// How much work the builder does. The hits are the same bits for each; but those of TriangleTest other than
+/// watertight may lie outside of their triangle's box by rounding, and then depend on the tree.
 enum class BuildQuality : std::uint8_t {
   fast,      ///< the fastest to build
   balanced,  ///< between the two: where the halves of a scene overlap much, as in buildings, triangles are
@@ -90,7 +91,7 @@ enum class BuildQuality : std::uint8_t {
          ///< build
 };
 
-/// How a structure is built. No hit depends on it but for `mask`.
+/// How a structure is built. No hit depends on it but for `mask`, and as BuildQuality says.
 struct BuildOptions {
   BuildQuality quality = BuildQuality::balanced;
   bool parallel = true;  ///< use several threads; the structure is the same bytes

@@ -19,8 +19,8 @@ namespace oktett {
 ///
 /// Vertices that move refit the tree of their mesh: boxes and corners follow, links stay. When the expected
 /// cost of a ray (AccelStats::sah_cost) has grown by more than kMostGrowth since the tree was built, or the
-/// tree cannot follow, it is built anew. No hit depends on that: after any changes hits have the bits that
-/// they have in an object made afresh of the same geometries in the same order.
+/// tree cannot follow, it is built anew. No hit depends on that, as BuildQuality says: after any changes hits
+/// have the bits that they have in an object made afresh of the same geometries in the same order.
 ///
 /// Not for several threads at a time. The structures that accel() returns never change, and may be queried by
 /// any thread whatever becomes of this object.
