@@ -101,9 +101,17 @@ class DynamicAccel {
   std::vector<std::unique_ptr<Entry>> entries_;  ///< by number; null: removed
   /// By mask; empty: something has changed since.
   std::map<std::uint32_t, std::shared_ptr<Snapshot>> snapshots_;
-  bool moved_ = false;  ///< transforms have changed since these were made
+  bool moved_ = false;            ///< transforms have changed since these were made
+  std::uint32_t used_masks_ = 0;  ///< see least_mask; as it was when the first of these was made
   Work work_;
 };
+
+/// Of all masks that meet the same geometries one, and the same for each: `used` are the bits of the
+/// geometries' masks, but for those that have all.
+inline std::uint32_t least_mask(std::uint32_t mask, std::uint32_t used) {
+  const std::uint32_t others = mask & ~used;
+  return (mask & used) | (others & -others);
+}
 
 /// hits[i] becomes the nearest hit of ray i, which has the mask masks[i]; see DynamicAccel::accel(mask). The
 /// rays of each structure are traced together. Throws Error if the arrays differ in size.

@@ -23,6 +23,7 @@
 #include "accel/dynamic_accel.h"
 #include "bench/peer_timing.h"
 #include "bench/program.h"
+#include "core/mesh_geometry.h"
 #include "core/random.h"
 #include "io/mesh/load/load_mesh.h"
 
@@ -133,9 +134,7 @@ struct Row {
 
 void compare_mesh(const std::string& path, const ChangesOptions& options, int threads) {
   const auto mesh = std::make_shared<const TriangleMesh>(load_mesh(path).mesh);
-  Vec3f lo = mesh->positions[0], hi = lo;
-  for (const Vec3f& p : mesh->positions) lo = min(lo, p), hi = max(hi, p);
-  const float size = max_component(hi - lo);
+  const float size = max_component(corner_box(*mesh).extent());
   const std::string name = std::filesystem::path(path).stem().string();
   Row build, refit;
   on_threads(threads, [&] {
@@ -204,12 +203,7 @@ int run(int argc, char** argv) {
   const std::vector<Option> known = {
       {"--threads", "N,...", "numbers of threads (default 1,2)",
        [&](const std::string& value) {
-         options.threads.clear();
-         std::size_t begin = 0;
-         for (std::size_t end; begin <= value.size(); begin = end + 1) {
-           end = std::min(value.find(',', begin), value.size());
-           options.threads.push_back(number(value.substr(begin, end - begin), 1, 1024));
-         }
+         options.threads = each(value, [](const std::string& word) { return number(word, 1, 1024); });
        }},
       {"--instances", "N", "instances that move (default 10000)",
        [&](const std::string& value) { options.instances = number(value, 1, 10'000'000); }},

@@ -20,15 +20,6 @@ bool PeerOptions::wants_tracing() const {
   return std::ranges::any_of(works, [](Work work) { return work != Work::build && work != Work::bytes; });
 }
 
-/// What `parse` makes of each word of a list with commas.
-template <class F>
-static auto each(const std::string& list, const F& parse) {
-  std::vector<decltype(parse(list))> values;
-  std::istringstream words(list + ',');
-  for (std::string word; std::getline(words, word, ',');) values.push_back(parse(word));
-  return values;
-}
-
 static std::vector<int> integers(const std::string& list, int least) {
   return each(list, [&](const std::string& word) { return number(word, least, 1'000'000); });
 }

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,15 @@ T number(const std::string& word, T least, T most) {
     throw Error("expected a number from " + std::to_string(least) + " to " + std::to_string(most) +
                 ", found '" + word + "'");
   return value;
+}
+
+/// What `parse` makes of each word of a list with commas.
+template <class F>
+auto each(const std::string& list, const F& parse) {
+  std::vector<decltype(parse(list))> values;
+  std::istringstream words(list + ',');
+  for (std::string word; std::getline(words, word, ',');) values.push_back(parse(word));
+  return values;
 }
 
 /// Throws Error if the file cannot be written.

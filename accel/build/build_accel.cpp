@@ -204,8 +204,6 @@ std::size_t item_count(const Geometry& g) {
 /// Whether the transform of each geometry is invertible; others are left out.
 using Usable = std::vector<bool>;
 
-bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
-
 PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind) {
   return {{-b.lo.x, -b.lo.y, -b.lo.z}, item, {b.hi.x, b.hi.y, b.hi.z}, static_cast<std::uint32_t>(kind)};
 }

@@ -227,6 +227,10 @@ void DynamicAccel::update(Entry& entry) {
 
 /// Brings all trees up to date that rays may enter.
 void DynamicAccel::update() {
+  used_masks_ = 0;
+  for (const auto& entry : entries_)
+    if (entry != nullptr && entry->enabled && entry->geometry.mask != ~0u)
+      used_masks_ |= entry->geometry.mask;
   std::vector<Entry*> stale;
   for (const auto& entry : entries_)
     if (entry != nullptr && entry->enabled && entry->has_tree() && entry->stale != Entry::Stale::none)
@@ -308,13 +312,8 @@ std::shared_ptr<const Accel> DynamicAccel::accel(std::uint32_t mask) {
         move(*kept.begin()->second, kept.begin()->first))
       snapshots_ = std::move(kept);
   }
-  // Bits that no geometry has tell nothing apart.
-  std::uint32_t used = 0;
-  for (const auto& entry : entries_)
-    if (entry != nullptr && entry->enabled && entry->geometry.mask != ~0u) used |= entry->geometry.mask;
-  const std::uint32_t others = mask & ~used;
-  mask = (mask & used) | (others & -others);
   if (snapshots_.empty()) update();
+  mask = least_mask(mask, used_masks_);
   auto found = snapshots_.find(mask);
   if (found == snapshots_.end()) found = snapshots_.emplace(mask, snapshot_of(mask)).first;
   return {found->second, found->second->accel.get()};

@@ -236,7 +236,7 @@ bool move_instances(Accel& accel, const std::vector<Placement>& places, bool par
         const InstanceItem& instance = accel.instances[k];
         const Box box =
             instance_bounds(accel.geometries[accel.geometry_of(instance.item)].transform, *instance.child);
-        if (box.empty() || !is_finite(box.lo) || !is_finite(box.hi)) failed = true;
+        if (!is_usable(box)) failed = true;
         part.box.grow(box);
       }
     }

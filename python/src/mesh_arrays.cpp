@@ -75,10 +75,8 @@ void set_normals(const py::object& value, TriangleMesh& mesh) {
   mesh.normals.resize_uninitialized(static_cast<std::size_t>(array.size()) / 3);
   copy_to(array.data(), static_cast<std::size_t>(array.size()), mesh.normals.data());
   mesh.normal_indices = own_indices(mesh, of_corners);
-  for (std::uint32_t& index : mesh.normal_indices) {
-    const float square = dot(mesh.normals[index], mesh.normals[index]);
-    if (!(square > 0 && std::isfinite(square))) index = kNoId;
-  }
+  for (std::uint32_t& index : mesh.normal_indices)
+    if (!is_normal(mesh.normals[index])) index = kNoId;
 }
 
 void set_uvs(const py::object& value, TriangleMesh& mesh) {

@@ -292,11 +292,6 @@ static bool has_vertex_normals(const TriangleMesh& mesh) {
   return true;
 }
 
-static bool is_normal(const Vec3f& n) {
-  const float square = dot(n, n);
-  return square > 0 && std::isfinite(square);
-}
-
 std::shared_ptr<const TriangleMesh> SceneStore::replaced(const AddedMesh& added,
                                                          const MeshChange& change) const {
   const TriangleMesh& mesh = *added.mesh;
@@ -387,11 +382,10 @@ void SceneStore::set_vertices(std::uint32_t number, const MeshChange& change) {
 // ---- The structure.
 
 std::uint32_t SceneStore::least_mask(std::uint32_t mask) const {
-  std::uint32_t told_apart = 0;
+  std::uint32_t used = 0;
   for (const ObjectState& state : states_)
-    if (state.mask != ~0u) told_apart |= state.mask;
-  const std::uint32_t others = ~told_apart & mask;
-  return (mask & told_apart) | (others & -others);
+    if (state.mask != ~0u) used |= state.mask;
+  return oktett::least_mask(mask, used);
 }
 
 std::shared_ptr<const PlacedWorld> SceneStore::built_world(std::uint32_t mask) const {

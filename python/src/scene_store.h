@@ -2,6 +2,7 @@
 /// \file What a Scene of Python holds: a scene, what it was read from, and the structure that answers
 /// queries.
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -41,6 +42,12 @@ struct PlacedWorld : World {
   Vec3d origin;
   std::vector<Warning> lost_digits;
 };
+
+/// Whether a vector given as a normal is one: finite, and of any length but zero.
+inline bool is_normal(const Vec3f& n) {
+  const float square = dot(n, n);
+  return square > 0 && std::isfinite(square);
+}
 
 /// New positions and normals of the vertices of a mesh from number `first` on.
 struct MeshChange {
