@@ -2,6 +2,7 @@
 
 #include "accel/build/sah.h"
 #include "accel/code.h"
+#include "accel/time/time_tree.h"
 #include "core/isa_select.h"
 
 namespace oktett {
@@ -20,6 +21,10 @@ const BuildKernels& build_kernels(Isa isa) {
 
 const InteractionCode& interaction_code(Isa isa) {
   return with_isa(isa, []<class A>() -> const InteractionCode& { return interaction_code<A>(); });
+}
+
+const TimeCode& time_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const TimeCode& { return time_code<A>(); });
 }
 
 }  // namespace oktett

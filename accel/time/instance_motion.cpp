@@ -1,0 +1,120 @@
+#include "accel/time/instance_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace oktett {
+
+std::uint32_t key_count(const SceneInstance& instance) {
+  return static_cast<std::uint32_t>(instance.turning.empty() ? instance.transforms.size()
+                                                             : instance.turning.size());
+}
+
+namespace {
+
+using Quaternion = std::array<double, 4>;
+
+double dot(const Quaternion& a, const Quaternion& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
+Quaternion unit(const double (&q)[4]) {
+  Quaternion u{q[0], q[1], q[2], q[3]};
+  const double size = std::sqrt(dot(u, u));
+  for (double& x : u) x /= size;
+  return u;
+}
+
+Affine rotation_of(const Quaternion& q) {
+  const double r = q[0], i = q[1], j = q[2], k = q[3];
+  Affine a;
+  a.m = {{{r * r + i * i - j * j - k * k, 2 * (i * j - r * k), 2 * (i * k + r * j), 0},
+          {2 * (i * j + r * k), r * r - i * i + j * j - k * k, 2 * (j * k - r * i), 0},
+          {2 * (i * k - r * j), 2 * (j * k + r * i), r * r - i * i - j * j + k * k, 0}}};
+  return a;
+}
+
+/// Half the angle between two rotations, at most a right angle.
+double half_angle(const Quaternion& a, const Quaternion& b) {
+  return std::acos(std::min(1.0, std::abs(dot(a, b))));
+}
+
+/// The rotation between two, of which the part f is gone.
+Quaternion slerp(const Quaternion& a, const Quaternion& b, double f) {
+  const double sign = dot(a, b) < 0 ? -1 : 1, angle = half_angle(a, b);
+  Quaternion q;
+  if (angle < 1e-7) {
+    for (std::size_t i = 0; i < 4; ++i) q[i] = (1 - f) * a[i] + f * sign * b[i];
+  } else {
+    const double wa = std::sin((1 - f) * angle) / std::sin(angle), wb = std::sin(f * angle) / std::sin(angle);
+    for (std::size_t i = 0; i < 4; ++i) q[i] = wa * a[i] + wb * sign * b[i];
+  }
+  return q;
+}
+
+Affine between(const Affine& a, const Affine& b, double f) {
+  Affine m;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 4; ++c) m.m[r][c] = (1 - f) * a.m[r][c] + f * b.m[r][c];
+  return m;
+}
+
+Affine map_of(const TurningMap& a, const TurningMap& b, double f) {
+  Affine map = rotation_of(slerp(unit(a.quaternion), unit(b.quaternion), f)) * between(a.inner, b.inner, f);
+  const Vec3d shift = a.outer * (1 - f) + b.outer * f;
+  for (std::size_t k = 0; k < 3; ++k) map.m[k][3] += shift[static_cast<int>(k)];
+  return map;
+}
+
+/// How far the image of a point of `box` may be from the straight line between its images at two keys.
+///
+/// With R turning by the angle w between the keys and q moving from q0 to q1 along a line, the second
+/// derivative of R q is R'' q + 2 R' q', at most w^2 max |q| + 2 w |q1 - q0|; a function deviates from its
+/// chord by at most an eighth of it.
+double bulge(const TurningMap& a, const TurningMap& b, const Box& box) {
+  const double w = 2 * half_angle(unit(a.quaternion), unit(b.quaternion));
+  double farthest = 0, way = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                  corner & 4 ? box.hi.z : box.lo.z};
+    const Vec3d qa = a.inner.point(p), qb = b.inner.point(p);
+    farthest = std::max({farthest, length(qa), length(qb)}), way = std::max(way, length(qb - qa));
+  }
+  return (w * w * farthest + 2 * w * way) / 8;
+}
+
+Box grown(Box box, double by) {
+  const Vec3d more{by, by, by};
+  return {round_down(Vec3d(box.lo) - more), round_up(Vec3d(box.hi) + more)};
+}
+
+}  // namespace
+
+Affine map_at(const SceneInstance& instance, const KeyTime& time) {
+  const std::size_t next = std::min<std::size_t>(time.key + 1, key_count(instance) - 1);
+  const double f = static_cast<double>(time.f);
+  if (!instance.turning.empty()) return map_of(instance.turning[time.key], instance.turning[next], f);
+  if (next == time.key) return instance.transforms[time.key];
+  return between(instance.transforms[time.key], instance.transforms[next], f);
+}
+
+Box moved_bounds(const Affine& map, const Box& box) {
+  const Box moved = transform_bounds(map, box);
+  if (moved.empty()) return moved;
+  const Vec3f e = moved.extent();
+  const float size = std::max({e.x, e.y, e.z, max_component(abs(moved.lo)), max_component(abs(moved.hi))});
+  return grown(moved, 0x1p-20 * static_cast<double>(size));
+}
+
+Box moved_bounds(const SceneInstance& instance, const Box& box, std::uint32_t key) {
+  if (box.empty()) return {};
+  const Box moved = moved_bounds(map_at(instance, {key, 0}), box);
+  if (moved.empty() || instance.turning.empty()) return moved;
+  double most = 0;
+  if (key > 0) most = bulge(instance.turning[key - 1], instance.turning[key], box);
+  if (key + 1 < key_count(instance))
+    most = std::max(most, bulge(instance.turning[key], instance.turning[key + 1], box));
+  return grown(moved, most * (1 + 0x1p-20));
+}
+
+}  // namespace oktett

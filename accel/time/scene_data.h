@@ -1,0 +1,57 @@
+#pragma once
+/// \file A scene as it is traced.
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "accel/time/time_tree.h"
+#include "accel/trace_scene.h"
+
+namespace oktett {
+
+/// The items of a tree: the primitives of some geometries of the scene, one after the other.
+struct ItemTable {
+  std::vector<std::uint32_t> geometry;  ///< places in TraceScene::geometries
+  std::vector<std::uint32_t> first{0};  ///< of each, the first item, and their number at the end
+
+  struct Place {
+    std::uint32_t geometry, primitive;
+  };
+  Place operator[](std::uint32_t item) const {
+    const auto after = std::upper_bound(first.begin(), first.end(), item);
+    const auto k = static_cast<std::size_t>(after - first.begin()) - 1;
+    return {geometry[k], item - first[k]};
+  }
+  std::uint32_t count() const { return first.back(); }
+};
+
+/// What moves with one number of keys, and what a callback tests.
+struct MovingPart {
+  std::unique_ptr<const TimeTree> tree;
+  ItemTable items;
+};
+
+class TraceScene {
+ public:
+  std::vector<SceneGeometry> geometries;
+  std::shared_ptr<const Accel> fixed;  ///< never null
+  /// Of geometry i of `fixed`: its place in `geometries`, and which of an array of instances it is.
+  std::vector<ItemTable::Place> fixed_place;
+  std::vector<MovingPart> moving;
+  Box bounds;                ///< at all times
+  std::uint32_t levels = 0;  ///< of instances
+  // Here or in a scene inside:
+  bool has_masks = false;  ///< a mask is not ~0
+  bool has_closest_filters = false, has_any_filters = false;
+
+  /// The scene that instance `index` of a geometry shows.
+  const TraceScene& child(std::uint32_t geometry, std::uint32_t index) const {
+    const auto& shape = geometries[geometry].shape;
+    if (const auto* const one = std::get_if<SceneInstance>(&shape)) return *one->child;
+    const auto& many = std::get<SceneInstances>(shape);
+    return *many.children[many.places[index].child];
+  }
+};
+
+}  // namespace oktett

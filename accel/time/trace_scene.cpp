@@ -1,0 +1,379 @@
+#include "accel/trace_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "accel/accel_data.h"
+#include "accel/batch_pieces.h"
+#include "accel/hit_place.h"
+#include "accel/hit_sink.h"
+#include "accel/time/instance_motion.h"
+#include "accel/time/scene_data.h"
+#include "core/error.h"
+
+namespace oktett {
+
+HitFilter::~HitFilter() = default;
+UserShape::~UserShape() = default;
+FaceMap::~FaceMap() = default;
+
+void QuadFaces::to_face(std::uint32_t& primitive, float& u, float& v) const {
+  if (primitive % 2 != 0) u = 1 - u, v = 1 - v;
+  primitive /= 2;
+}
+
+namespace {
+
+/// A hit with the place in the scene of its outermost geometry, which decides among equal distances.
+struct PlacedHit {
+  SceneHit hit;
+  std::uint32_t place = kNoId;
+};
+
+/// Whether `a` counts rather than `b` at the same distance: own geometries first, as in an Accel.
+bool is_before(const PlacedHit& a, const PlacedHit& b) {
+  const bool inner = a.hit.chain.count > 0, other = b.hit.chain.count > 0;
+  return inner != other ? other : a.place < b.place;
+}
+
+void name_face(SceneHit& hit, const SceneGeometry& geometry, std::uint32_t primitive) {
+  hit.geometry = geometry.number, hit.primitive = primitive;
+  if (geometry.faces != nullptr) geometry.faces->to_face(hit.primitive, hit.u, hit.v);
+}
+
+Vec3f triangle_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cross(b - a, c - a); }
+
+// ---- Hits in what does not move.
+
+/// A hit in the fixed structure of a scene, named, and seen from the innermost scene.
+struct NamedHit {
+  PlacedHit placed;  ///< all but the normal
+  const TraceScene* scene;
+  const SceneGeometry* geometry;
+  Ray ray;              ///< in the innermost scene, as its own structure traced it
+  Hit own;              ///< in the fixed structure of the innermost scene
+  bool is_seen = true;  ///< by the masks of the geometry and of all instances
+
+  /// Sets the normal.
+  void complete() {
+    const auto& shape = std::get<Geometry>(geometry->shape);
+    const auto* const mesh = std::get_if<MeshGeometry>(&shape.shape);
+    if (mesh == nullptr || !shape.transform.is_identity()) {
+      placed.hit.normal = surface_interaction(*scene->fixed, ray, own).geometric_normal;
+      return;
+    }
+    const std::uint32_t triangle = own.item - scene->fixed->first_item[scene->fixed->geometry_of(own.item)];
+    const std::uint32_t* const index = &mesh->mesh->indices[3 * std::size_t{triangle}];
+    const auto& p = mesh->mesh->positions;
+    placed.hit.normal = triangle_normal(p[index[0]], p[index[1]], p[index[2]]);
+  }
+};
+
+NamedHit name_hit(const TraceScene& scene, const Ray& ray, std::uint32_t mask, const InstanceChain& chain,
+                  const Hit& hit) {
+  NamedHit n;
+  n.scene = &scene, n.ray = ray, n.own = hit;
+  n.placed.hit.chain = chain;
+  std::uint32_t geometry, primitive;
+  for (;;) {
+    const Accel& accel = *n.scene->fixed;
+    geometry = n.own.instance == kNoId ? accel.geometry_of(n.own.item)
+                                       : outermost_link(accel, n.own.instance).geometry;
+    const ItemTable::Place place = n.scene->fixed_place[geometry];
+    if (n.placed.place == kNoId) n.placed.place = place.geometry;
+    n.geometry = &n.scene->geometries[place.geometry];
+    n.is_seen &= (n.geometry->mask & mask) != 0;
+    // A chain may also lead into a combination, or to a shape that its transform distorts.
+    if (std::holds_alternative<Geometry>(n.geometry->shape)) {
+      primitive = n.own.instance == kNoId ? n.own.item - accel.first_item[geometry] : 0;
+      break;
+    }
+    n.placed.hit.chain.push(n.geometry->number, place.primitive);
+    n.ray = moved_ray(accel.frames[geometry].inverse, n.ray);
+    n.own.instance = outermost_link(accel, n.own.instance).rest;
+    n.scene = &n.scene->child(place.geometry, place.primitive);
+  }
+  SceneHit& out = n.placed.hit;
+  out.t = hit.t, out.u = hit.u, out.v = hit.v;
+  name_face(out, *n.geometry, primitive);
+  return n;
+}
+
+bool same_chain(const InstanceChain& a, const InstanceChain& b) {
+  return a.count == b.count && std::equal(a.geometry, a.geometry + a.count, b.geometry) &&
+         std::equal(a.primitive, a.primitive + a.count, b.primitive);
+}
+
+// ---- One ray.
+
+template <Query Q>
+class SceneTracer {
+ public:
+  SceneTracer(const TraceScene& scene, const RayContext& context, const InstanceChain& chain, Isa isa)
+      : scene_(scene), context_(context), chain_(chain), isa_(isa) {
+    filters_ = context.filter != nullptr ||
+               (Q == Query::closest ? scene.has_closest_filters : scene.has_any_filters);
+    judges_ = scene.has_masks || filters_;
+  }
+
+  /// What the ray hits, with a place if anything; for Query::any no more than that it does. A ray that a
+  /// filter has ended has a place without a geometry.
+  PlacedHit run(const Ray& ray) {
+    if (context_.mask == 0) return {};
+    ray_ = ray;
+    if (scene_.fixed->stats.items > 0) fixed();
+    for (const MovingPart& part : scene_.moving) {
+      if (Q == Query::any && best_.place != kNoId) break;
+      moving(part);
+    }
+    return best_;
+  }
+  bool ended() const { return ended_; }
+
+ private:
+  // ---- Filters.
+
+  static const HitFilter* filter_of(const SceneGeometry& geometry) {
+    return Q == Query::closest ? geometry.closest_filter : geometry.any_filter;
+  }
+
+  /// The one of these hits with a geometry, in their order, that its filter and that of the query accept;
+  /// null if there is none. Where the ray ends without a hit, it has no geometry.
+  const SceneHit* judge(const SceneGeometry& geometry, const Ray& ray, std::span<SceneHit> hits) {
+    const HitFilter* const own = filter_of(geometry);
+    while (!hits.empty()) {
+      std::size_t accepted = own != nullptr ? own->judge(ray, context_, hits) : 0;
+      if (accepted < hits.size() && context_.filter != nullptr) {
+        const std::size_t also = context_.filter->judge(ray, context_, hits.subspan(accepted, 1));
+        if (also != 0) {
+          hits = hits.subspan(accepted + 1);
+          continue;
+        }
+      }
+      if (accepted >= hits.size()) return nullptr;
+      if (Q == Query::any && !hits[accepted].valid()) ended_ = true;
+      return &hits[accepted];
+    }
+    return nullptr;
+  }
+
+  // ---- What does not move.
+
+  void fixed() {
+    if (Q == Query::any && !judges_) {
+      if (any_hit(*scene_.fixed, ray_, isa_)) best_.hit.geometry = best_.place = 0;
+      return;
+    }
+    const Hit first = closest_hit(*scene_.fixed, ray_, isa_);
+    if (!first.valid()) return;
+    NamedHit named = name_hit(scene_, ray_, context_.mask, chain_, first);
+    if (!judges_) {
+      if (Q == Query::closest) named.complete();
+      best_ = named.placed;
+      return;
+    }
+    if (decide({&named, 1})) return;
+    // Few rays come here; all that is left is found at once.
+    std::vector<Hit> hits;
+    all_hits(*scene_.fixed, ray_, hits, isa_);
+    std::vector<NamedHit> group;
+    const auto is_rest = [&](const Hit& hit) {
+      return hit.t > first.t || (hit.t == first.t && !(hit == first));
+    };
+    for (auto next = std::find_if(hits.begin(), hits.end(), is_rest); next != hits.end();) {
+      group.clear();
+      for (; next != hits.end(); ++next) {
+        NamedHit more = name_hit(scene_, ray_, context_.mask, chain_, *next);
+        if (!group.empty() && (more.geometry != group[0].geometry ||
+                               !same_chain(more.placed.hit.chain, group[0].placed.hit.chain)))
+          break;
+        group.push_back(more);
+      }
+      if (decide(group)) return;
+    }
+  }
+
+  /// Keeps the first of these hits, all with one geometry in one chain, that counts. Returns whether there is
+  /// one.
+  bool decide(std::span<NamedHit> group) {
+    NamedHit& first = group[0];
+    if (!first.is_seen) return false;
+    std::vector<SceneHit> hits;
+    for (NamedHit& named : group) {
+      if (Q == Query::closest || filters_) named.complete();
+      hits.push_back(named.placed.hit);
+    }
+    const SceneHit* const accepted = judge(*first.geometry, first.ray, hits);
+    if (accepted == nullptr) return false;
+    best_ = {*accepted, first.placed.place};
+    return true;
+  }
+
+  // ---- What moves.
+
+  void moving(const MovingPart& part) {
+    part_ = &part;
+    tested_item_ = kNoId;
+    const TimeCalls calls{this, judges_ ? accept : nullptr, test, &ended_};
+    Ray ray = ray_;
+    ray.tmax = std::min(ray.tmax, best_.hit.t);
+    const TimeCode& code = time_code(isa_);
+    const Hit hit =
+        (Q == Query::closest ? code.closest_hit : code.any_hit)(*part.tree, ray, context_.time, calls);
+    if (!hit.valid()) return;
+    const ItemTable::Place place = part.items[hit.item];
+    PlacedHit found;
+    found.place = place.geometry;
+    found.hit = hit.item == tested_item_ ? tested_ : name_triangle(place, hit);
+    if (found.hit.t < best_.hit.t || is_before(found, best_)) best_ = found;
+  }
+
+  /// A hit of a triangle that moves.
+  SceneHit name_triangle(const ItemTable::Place& place, const Hit& hit) const {
+    const SceneGeometry& geometry = scene_.geometries[place.geometry];
+    const auto& shape = std::get<MovingMesh>(geometry.shape);
+    const KeyTime at =
+        KeyTime::of(context_.time, 1 + static_cast<std::uint32_t>(shape.later_positions.size()));
+    const Column<Vec3f>& a = at.key == 0 ? shape.mesh->positions : shape.later_positions[at.key - 1];
+    const Column<Vec3f>& b = shape.later_positions[at.key];
+    const auto corner = [&](std::size_t k) {
+      const std::uint32_t i = shape.mesh->indices[3 * std::size_t{place.primitive} + k];
+      return Vec3f{at.between(a[i].x, b[i].x), at.between(a[i].y, b[i].y), at.between(a[i].z, b[i].z)};
+    };
+    SceneHit out;
+    out.chain = chain_;
+    out.t = hit.t, out.u = hit.u, out.v = hit.v;
+    out.normal = triangle_normal(corner(0), corner(1), corner(2));
+    name_face(out, geometry, place.primitive);
+    return out;
+  }
+
+  /// TimeCalls::accept.
+  static bool accept(void* self, const Hit& hit) {
+    SceneTracer& tracer = *static_cast<SceneTracer*>(self);
+    const ItemTable::Place place = tracer.part_->items[hit.item];
+    const SceneGeometry& geometry = tracer.scene_.geometries[place.geometry];
+    if ((geometry.mask & tracer.context_.mask) == 0) return false;
+    if (!tracer.filters_) return true;
+    SceneHit candidate = tracer.name_triangle(place, hit);
+    if (tracer.judge(geometry, tracer.ray_, {&candidate, 1}) == nullptr) return false;
+    tracer.tested_ = candidate, tracer.tested_item_ = hit.item;
+    return true;
+  }
+
+  /// TimeCalls::test.
+  static bool test(void* self, std::uint32_t item, const Ray& ray, Hit& hit) {
+    SceneTracer& tracer = *static_cast<SceneTracer*>(self);
+    const ItemTable::Place place = tracer.part_->items[item];
+    const SceneGeometry& geometry = tracer.scene_.geometries[place.geometry];
+    if ((geometry.mask & tracer.context_.mask) == 0) return false;
+    const auto* const shape = std::get_if<std::shared_ptr<const UserShape>>(&geometry.shape);
+    SceneHit found;
+    if (!(shape != nullptr ? tracer.ask(**shape, geometry, place.primitive, ray, found)
+                           : tracer.enter(geometry, place, ray, found)))
+      return false;
+    if (found.t == ray.tmax && hit.valid() && item > hit.item) return false;
+    tracer.tested_ = found, tracer.tested_item_ = item;
+    hit.t = found.t, hit.u = found.u, hit.v = found.v;
+    return true;
+  }
+
+  /// Asks a shape of the program.
+  bool ask(const UserShape& shape, const SceneGeometry& geometry, std::uint32_t primitive, const Ray& ray,
+           SceneHit& found) {
+    found.chain = chain_;
+    found.t = ray.tmax, found.geometry = geometry.number, found.primitive = primitive;
+    if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context_, found)
+                              : shape.any_hit(primitive, ray, context_, found)))
+      return false;
+    if (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
+    return !filters_ || judge(geometry, ray, {&found, 1}) != nullptr;
+  }
+
+  /// Enters a scene that an instance shows.
+  bool enter(const SceneGeometry& geometry, const ItemTable::Place& place, const Ray& ray, SceneHit& found) {
+    if (chain_.count == InstanceChain::kMost) return false;
+    Affine map;
+    if (const auto* const one = std::get_if<SceneInstance>(&geometry.shape))
+      map = map_at(*one, KeyTime::of(context_.time, key_count(*one)));
+    else
+      map = std::get<SceneInstances>(geometry.shape).places[place.primitive].transform;
+    const Affine to_child = map.inverse();
+    if (!map.is_invertible(to_child)) return false;
+    InstanceChain chain = chain_;
+    chain.push(geometry.number, place.primitive);
+    SceneTracer child(scene_.child(place.geometry, place.primitive), context_, chain, isa_);
+    const PlacedHit inner = child.run(moved_ray(to_child, ray));
+    ended_ |= child.ended();
+    found = inner.hit;
+    return inner.place != kNoId;
+  }
+
+  const TraceScene& scene_;
+  const RayContext& context_;
+  const InstanceChain& chain_;
+  const Isa isa_;
+  Ray ray_;
+  bool filters_, judges_;
+  bool ended_ = false;  ///< a filter has ended a query for any hit
+  PlacedHit best_;
+  const MovingPart* part_ = nullptr;
+  SceneHit tested_;  ///< the hit that a filter or a test let pass last, with item tested_item_
+  std::uint32_t tested_item_ = kNoId;
+};
+
+const InstanceChain kNoChain{};
+
+template <Query Q>
+SceneHit trace(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
+  SceneTracer<Q> tracer(scene, context, kNoChain, isa);
+  const SceneHit hit = tracer.run(ray).hit;
+  return hit.valid() ? hit : SceneHit{};
+}
+
+void check_sizes(std::size_t rays, std::size_t contexts, std::size_t answers, const char* query) {
+  require_same_size(rays, answers, query);
+  if (contexts != rays && contexts != 1)
+    throw Error(std::string(query) + ": " + std::to_string(rays) + " rays, but " + std::to_string(contexts) +
+                " contexts; expected one for each or one for all");
+}
+
+/// Calls f(i) for each ray, in parallel if there are many.
+template <class Function>
+void for_each_ray(std::size_t count, Function&& f) {
+  const auto piece = [&](std::size_t k) {
+    const std::size_t end = std::min(count, (k + 1) * kPieceRays);
+    for (std::size_t i = k * kPieceRays; i < end; ++i) f(i);
+  };
+  if (count <= kPieceRays) return piece(0);
+  for_each_task(piece_count(count), piece);
+}
+
+}  // namespace
+
+SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
+  return trace<Query::closest>(scene, ray, context, isa);
+}
+
+bool any_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
+  return trace<Query::any>(scene, ray, context, isa).valid();
+}
+
+void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
+                 std::span<SceneHit> hits, Isa isa) {
+  check_sizes(rays.size(), contexts.size(), hits.size(), "closest_hit");
+  for_each_ray(rays.size(), [&](std::size_t i) {
+    hits[i] = closest_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
+  });
+}
+
+void any_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
+             std::span<std::uint8_t> occluded, Isa isa) {
+  check_sizes(rays.size(), contexts.size(), occluded.size(), "any_hit");
+  for_each_ray(rays.size(), [&](std::size_t i) {
+    occluded[i] = any_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
+  });
+}
+
+}  // namespace oktett
