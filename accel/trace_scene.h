@@ -48,6 +48,7 @@ struct SceneHit {
   Vec3f normal;
   std::uint32_t geometry = kNoId;   ///< SceneGeometry::number
   std::uint32_t primitive = kNoId;  ///< in the geometry, see FaceMap
+  void* user = nullptr;             ///< SceneGeometry::user
   InstanceChain chain;
 
   /// False for a miss.
@@ -149,6 +150,7 @@ struct SceneGeometry {
   const HitFilter* closest_filter = nullptr;
   const HitFilter* any_filter = nullptr;
   std::shared_ptr<const FaceMap> faces;  ///< of meshes; null: a primitive is a triangle
+  void* user = nullptr;                  ///< the program's own, found again in hits
 };
 
 /// A scene of geometries. It never changes, so any number of threads may query it at the same time. What does

@@ -144,6 +144,7 @@ void add_convert_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 void add_examples_command(CommandLine& line);
+void add_embree_command(CommandLine& line);
 /// `completion` and `manual`, which describe the verbs that `line` has.
 void add_description_commands(CommandLine& line);
 

@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
   add_merge_command(line);
   add_verify_command(line);
   add_examples_command(line);
+  add_embree_command(line);
   add_description_commands(line);
   if (const std::optional<int> status = line.parse()) return *status;
   return line.run();

@@ -38,7 +38,7 @@ bool is_before(const PlacedHit& a, const PlacedHit& b) {
 }
 
 void name_face(SceneHit& hit, const SceneGeometry& geometry, std::uint32_t primitive) {
-  hit.geometry = geometry.number, hit.primitive = primitive;
+  hit.geometry = geometry.number, hit.primitive = primitive, hit.user = geometry.user;
   if (geometry.faces != nullptr) geometry.faces->to_face(hit.primitive, hit.u, hit.v);
 }
 
@@ -283,11 +283,13 @@ class SceneTracer {
   bool ask(const UserShape& shape, const SceneGeometry& geometry, std::uint32_t primitive, const Ray& ray,
            SceneHit& found) {
     found.chain = chain_;
-    found.t = ray.tmax, found.geometry = geometry.number, found.primitive = primitive;
+    found.t = ray.tmax;
+    found.geometry = geometry.number, found.primitive = primitive, found.user = geometry.user;
     if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context_, found)
                               : shape.any_hit(primitive, ray, context_, found)))
       return false;
-    if (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
+    if (Q == Query::closest && (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)))
+      return false;
     return !filters_ || judge(geometry, ray, {&found, 1}) != nullptr;
   }
 

@@ -1,0 +1,203 @@
+#include "embree/callbacks.h"
+
+#include <cmath>
+#include <limits>
+
+namespace oktett::embree {
+
+std::uint32_t instance_count(const QueryContext& context) {
+  std::uint32_t count = 0;
+  while (count < RTC_MAX_INSTANCE_LEVEL_COUNT && context.instID[count] != RTC_INVALID_GEOMETRY_ID) ++count;
+  return count;
+}
+
+namespace {
+
+/// Shows the program's ray and context as they are at a place in a scene, while it lives.
+class Shown {
+ public:
+  Shown(RayQuery& query, const Ray& ray, const InstanceChain& chain)
+      : query_(query), ray_(*query.ray), context_(*query.context) {
+    RTCRay& shown = *query.ray;
+    shown.org_x = ray.origin.x, shown.org_y = ray.origin.y, shown.org_z = ray.origin.z;
+    shown.dir_x = ray.direction.x, shown.dir_y = ray.direction.y, shown.dir_z = ray.direction.z;
+    shown.tfar = ray.tmax;
+    if (chain.count > 0) set_instances(*query.context, chain, instance_count(context_));
+  }
+  ~Shown() { *query_.ray = ray_, *query_.context = context_; }
+  Shown(const Shown&) = delete;
+  Shown& operator=(const Shown&) = delete;
+
+ private:
+  RayQuery& query_;
+  const RTCRay ray_;
+  const QueryContext context_;
+};
+
+/// Whether a filter function lets a hit pass, which it may change.
+bool passes(RTCFilterFunctionN filter, const Geometry& geometry, RayQuery& query, SceneHit& hit) {
+  RTCHit shown;
+  shown.Ng_x = hit.normal.x, shown.Ng_y = hit.normal.y, shown.Ng_z = hit.normal.z;
+  shown.u = hit.u, shown.v = hit.v;
+  shown.primID = hit.primitive, shown.geomID = hit.geometry;
+  for (std::uint32_t level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
+    shown.instID[level] = query.context->instID[level];
+#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
+    shown.instPrimID[level] = query.context->instPrimID[level];
+#endif
+  }
+  query.ray->tfar = hit.t;
+  int valid = -1;
+  RTCFilterFunctionNArguments arguments{&valid,
+                                        geometry.user,
+                                        query.context,
+                                        reinterpret_cast<RTCRayN*>(query.ray),
+                                        reinterpret_cast<RTCHitN*>(&shown),
+                                        1};
+  filter(&arguments);
+  if (valid != -1) return false;
+  hit.normal = {shown.Ng_x, shown.Ng_y, shown.Ng_z};
+  hit.u = shown.u, hit.v = shown.v;
+  return true;
+}
+
+/// The first hit that a filter function lets pass.
+template <class FilterOf>
+std::size_t first_passing(const Ray& ray, const RayContext& context, std::span<SceneHit> hits,
+                          const FilterOf& filter_of) {
+  RayQuery& query = query_of(context);
+  const Shown shown(query, ray, hits[0].chain);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto& geometry = *static_cast<const Geometry*>(hits[i].user);
+    const RTCFilterFunctionN filter = filter_of(query, geometry);
+    if (filter == nullptr || passes(filter, geometry, query, hits[i])) return i;
+  }
+  return hits.size();
+}
+
+}  // namespace
+
+const HitFilter* GeometryFilter::instance(bool any) {
+  static const GeometryFilter closest_hit(false), any_hit(true);
+  return any ? &any_hit : &closest_hit;
+}
+
+std::size_t GeometryFilter::judge(const Ray& ray, const RayContext& context, std::span<SceneHit> hits) const {
+  return first_passing(ray, context, hits, [&](const RayQuery&, const Geometry& geometry) {
+    return any_ ? geometry.any_filter : geometry.closest_filter;
+  });
+}
+
+const HitFilter* QueryFilter::instance() {
+  static const QueryFilter filter;
+  return &filter;
+}
+
+std::size_t QueryFilter::judge(const Ray& ray, const RayContext& context, std::span<SceneHit> hits) const {
+  return first_passing(ray, context, hits, [](const RayQuery& query, const Geometry& geometry) {
+    // User geometries call filters themselves.
+    const bool judged =
+        geometry.type != RTC_GEOMETRY_TYPE_USER && (query.filter_all || geometry.takes_filter_of_query);
+    return judged ? query.filter : nullptr;
+  });
+}
+
+// ---- User geometries.
+
+UserCallbacks::UserCallbacks(const Geometry& geometry)
+    : geometry_(geometry),
+      count_(geometry.bounds != nullptr ? geometry.user_primitives : 0),
+      keys_(geometry.time_steps) {}
+
+Box UserCallbacks::bounds(std::uint32_t primitive, std::uint32_t key) const {
+  RTCBounds b{};
+  const RTCBoundsFunctionArguments arguments{geometry_.user, primitive, key, &b};
+  geometry_.bounds(&arguments);
+  return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
+bool UserCallbacks::closest_hit(std::uint32_t primitive, const Ray& ray, const RayContext& context,
+                                SceneHit& hit) const {
+  RayQuery& query = query_of(context);
+  const RTCIntersectFunctionN intersect =
+      geometry_.intersect != nullptr ? geometry_.intersect : query.intersect;
+  if (intersect == nullptr) return false;
+  const Shown shown(query, ray, hit.chain);
+  RTCHit& out = query.rayhit->hit;
+  const RTCHit before = out;
+  out.geomID = RTC_INVALID_GEOMETRY_ID;
+  int valid = -1;
+  IntersectArguments arguments;
+  static_cast<RTCIntersectFunctionNArguments&>(arguments) = {
+      &valid, geometry_.user, primitive, query.context, reinterpret_cast<RTCRayHitN*>(query.rayhit),
+      1,      hit.geometry};
+  arguments.geometry = &geometry_, arguments.query = &query;
+  intersect(&arguments);
+  const bool found = out.geomID != RTC_INVALID_GEOMETRY_ID;
+  if (found) {
+    hit.t = query.ray->tfar, hit.u = out.u, hit.v = out.v;
+    hit.normal = {out.Ng_x, out.Ng_y, out.Ng_z};
+    hit.geometry = out.geomID, hit.primitive = out.primID;
+    // A program that traces on in another scene names its instances itself.
+    const std::uint32_t own = instance_count(*query.context);
+    for (std::uint32_t level = own; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level)
+      if (out.instID[level] != RTC_INVALID_GEOMETRY_ID && hit.chain.count < InstanceChain::kMost)
+        hit.chain.push(out.instID[level], 0);
+  }
+  out = before;
+  return found;
+}
+
+bool UserCallbacks::any_hit(std::uint32_t primitive, const Ray& ray, const RayContext& context,
+                            SceneHit& hit) const {
+  RayQuery& query = query_of(context);
+  const RTCOccludedFunctionN occluded = geometry_.occluded != nullptr ? geometry_.occluded : query.occluded;
+  if (occluded == nullptr) return false;
+  const Shown shown(query, ray, hit.chain);
+  int valid = -1;
+  OccludedArguments arguments;
+  static_cast<RTCOccludedFunctionNArguments&>(arguments) = {
+      &valid, geometry_.user, primitive, query.context, reinterpret_cast<RTCRayN*>(query.ray),
+      1,      hit.geometry};
+  arguments.geometry = &geometry_, arguments.query = &query;
+  occluded(&arguments);
+  // Where on the ray it is is not told.
+  hit.t = ray.tmax;
+  return query.ray->tfar < 0;
+}
+
+namespace {
+
+/// Lets the filters of a geometry and of the query judge a hit that a user geometry found.
+template <class Arguments>
+void filter_from_callback(const Arguments* arguments, const RTCFilterFunctionNArguments* filtered, bool any) {
+  const Geometry& geometry = *arguments->geometry;
+  const RTCFilterFunctionN own = any ? geometry.any_filter : geometry.closest_filter;
+  if (own != nullptr) own(filtered);
+  if (*filtered->valid != -1) return;
+  const RayQuery& query = *arguments->query;
+  if (query.filter != nullptr && (query.filter_all || geometry.takes_filter_of_query)) query.filter(filtered);
+}
+
+}  // namespace
+}  // namespace oktett::embree
+
+using namespace oktett::embree;
+
+#if OKTETT_EMBREE == 3
+#define OKTETT_FILTER_CLOSEST rtcFilterIntersection
+#define OKTETT_FILTER_ANY rtcFilterOcclusion
+#else
+#define OKTETT_FILTER_CLOSEST rtcInvokeIntersectFilterFromGeometry
+#define OKTETT_FILTER_ANY rtcInvokeOccludedFilterFromGeometry
+#endif
+
+RTC_API void OKTETT_FILTER_CLOSEST(const RTCIntersectFunctionNArguments* arguments,
+                                   const RTCFilterFunctionNArguments* filtered) {
+  filter_from_callback(static_cast<const IntersectArguments*>(arguments), filtered, false);
+}
+
+RTC_API void OKTETT_FILTER_ANY(const RTCOccludedFunctionNArguments* arguments,
+                               const RTCFilterFunctionNArguments* filtered) {
+  filter_from_callback(static_cast<const OccludedArguments*>(arguments), filtered, true);
+}

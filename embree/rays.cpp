@@ -1,0 +1,429 @@
+/// \file Rays: one at a time, in packets and in streams.
+
+#include <algorithm>
+#include <limits>
+
+#include "embree/callbacks.h"
+#include "embree/scene.h"
+
+namespace oktett::embree {
+
+namespace {
+
+/// Settings of the rays of one call.
+struct Settings {
+  QueryContext* context = nullptr;
+  RTCFilterFunctionN filter = nullptr;
+  bool filter_all = true;
+  RTCIntersectFunctionN intersect = nullptr;
+  RTCOccludedFunctionN occluded = nullptr;
+};
+
+/// A ray of the program. The range begins behind tnear, where Embree's begins with it; places behind the
+/// origin are never hit.
+Ray to_ray(const RTCRay& r) {
+  return {{r.org_x, r.org_y, r.org_z}, r.tnear < 0 ? 0.0f : r.tnear, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
+}
+
+/// Traces rays of one call through one scene.
+class Call {
+ public:
+  Call(const Scene& scene, const Settings& settings)
+      : traced_(*scene.to_trace().scene), isa_(scene.device->isa()), settings_(settings) {
+    if (settings_.context == nullptr) {
+#if OKTETT_EMBREE == 4
+      rtcInitRayQueryContext(&own_context_);
+#else
+      rtcInitIntersectContext(&own_context_);
+#endif
+      settings_.context = &own_context_;
+    }
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  void closest(RTCRayHit& rayhit) {
+    RTCRay& ray = rayhit.ray;
+    if (!(ray.tnear <= ray.tfar)) return;
+    RayQuery query = query_for(ray, &rayhit);
+    const SceneHit hit = closest_hit(traced_, to_ray(ray), context_for(ray, query), isa_);
+    if (!hit.valid()) return;
+    ray.tfar = hit.t;
+    RTCHit& out = rayhit.hit;
+    out.Ng_x = hit.normal.x, out.Ng_y = hit.normal.y, out.Ng_z = hit.normal.z;
+    out.u = hit.u, out.v = hit.v;
+    out.primID = hit.primitive, out.geomID = hit.geometry;
+    std::copy_n(settings_.context->instID, RTC_MAX_INSTANCE_LEVEL_COUNT, out.instID);
+#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
+    std::copy_n(settings_.context->instPrimID, RTC_MAX_INSTANCE_LEVEL_COUNT, out.instPrimID);
+#endif
+    if (hit.chain.count > 0) set_instances(out, hit.chain, instance_count(*settings_.context));
+  }
+
+  void any(RTCRay& ray) {
+    if (!(ray.tnear <= ray.tfar)) return;
+    RayQuery query = query_for(ray, nullptr);
+    if (any_hit(traced_, to_ray(ray), context_for(ray, query), isa_))
+      ray.tfar = -std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  RayQuery query_for(RTCRay& ray, RTCRayHit* rayhit) const {
+    return {&ray,
+            rayhit,
+            settings_.context,
+            settings_.filter,
+            settings_.filter_all,
+            settings_.intersect,
+            settings_.occluded};
+  }
+  RayContext context_for(const RTCRay& ray, RayQuery& query) const {
+    return {ray.time, ray.mask, query.filter != nullptr ? QueryFilter::instance() : nullptr, &query};
+  }
+
+  const TraceScene& traced_;
+  const Isa isa_;
+  Settings settings_;
+  QueryContext own_context_;
+};
+
+// ---- Rays in columns: number i of N.
+
+void load(const RTCRayN* from, unsigned n, unsigned i, RTCRay& to) {
+  auto* const rays = const_cast<RTCRayN*>(from);
+  to.org_x = RTCRayN_org_x(rays, n, i), to.org_y = RTCRayN_org_y(rays, n, i);
+  to.org_z = RTCRayN_org_z(rays, n, i), to.tnear = RTCRayN_tnear(rays, n, i);
+  to.dir_x = RTCRayN_dir_x(rays, n, i), to.dir_y = RTCRayN_dir_y(rays, n, i);
+  to.dir_z = RTCRayN_dir_z(rays, n, i), to.time = RTCRayN_time(rays, n, i);
+  to.tfar = RTCRayN_tfar(rays, n, i), to.mask = RTCRayN_mask(rays, n, i);
+  to.id = RTCRayN_id(rays, n, i), to.flags = RTCRayN_flags(rays, n, i);
+}
+
+void load(const RTCHitN* from, unsigned n, unsigned i, RTCHit& to) {
+  auto* const hits = const_cast<RTCHitN*>(from);
+  to.Ng_x = RTCHitN_Ng_x(hits, n, i), to.Ng_y = RTCHitN_Ng_y(hits, n, i), to.Ng_z = RTCHitN_Ng_z(hits, n, i);
+  to.u = RTCHitN_u(hits, n, i), to.v = RTCHitN_v(hits, n, i);
+  to.primID = RTCHitN_primID(hits, n, i), to.geomID = RTCHitN_geomID(hits, n, i);
+  for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
+    to.instID[level] = RTCHitN_instID(hits, n, i, level);
+#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
+    to.instPrimID[level] = RTCHitN_instPrimID(hits, n, i, level);
+#endif
+  }
+}
+
+void store(const RTCHit& from, RTCHitN* hits, unsigned n, unsigned i) {
+  RTCHitN_Ng_x(hits, n, i) = from.Ng_x, RTCHitN_Ng_y(hits, n, i) = from.Ng_y;
+  RTCHitN_Ng_z(hits, n, i) = from.Ng_z;
+  RTCHitN_u(hits, n, i) = from.u, RTCHitN_v(hits, n, i) = from.v;
+  RTCHitN_primID(hits, n, i) = from.primID, RTCHitN_geomID(hits, n, i) = from.geomID;
+  for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
+    RTCHitN_instID(hits, n, i, level) = from.instID[level];
+#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
+    RTCHitN_instPrimID(hits, n, i, level) = from.instPrimID[level];
+#endif
+  }
+}
+
+/// `n` rays in columns; those whose `valid` is -1, or all if there is none.
+void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned n) {
+  RTCRayN* const rays = RTCRayHitN_RayN(rayhits, n);
+  RTCHitN* const hits = RTCRayHitN_HitN(rayhits, n);
+  for (unsigned i = 0; i < n; ++i) {
+    if (valid != nullptr && valid[i] != -1) continue;
+    RTCRayHit one;
+    load(rays, n, i, one.ray), load(hits, n, i, one.hit);
+    call.closest(one);
+    RTCRayN_tfar(rays, n, i) = one.ray.tfar;
+    store(one.hit, hits, n, i);
+  }
+}
+
+void any_columns(Call& call, const int* valid, RTCRayN* rays, unsigned n) {
+  for (unsigned i = 0; i < n; ++i) {
+    if (valid != nullptr && valid[i] != -1) continue;
+    RTCRay one;
+    load(rays, n, i, one);
+    call.any(one);
+    RTCRayN_tfar(rays, n, i) = one.tfar;
+  }
+}
+
+#if OKTETT_EMBREE == 3
+using ClosestArguments = RTCIntersectContext;
+using AnyArguments = RTCIntersectContext;
+
+Settings settings_of(const Scene& scene, RTCIntersectContext* context) {
+  Settings settings;
+  settings.context = context;
+  if (context != nullptr && (scene.flags & RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION) != 0)
+    settings.filter = context->filter;
+  return settings;
+}
+#else
+using ClosestArguments = RTCIntersectArguments;
+using AnyArguments = RTCOccludedArguments;
+
+template <class Arguments>
+Settings settings_of(const Scene&, Arguments* arguments) {
+  Settings settings;
+  if (arguments == nullptr) return settings;
+  settings.context = arguments->context, settings.filter = arguments->filter;
+  settings.filter_all = (arguments->flags & RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER) != 0;
+  if constexpr (std::is_same_v<Arguments, RTCIntersectArguments>)
+    settings.intersect = arguments->intersect;
+  else
+    settings.occluded = arguments->occluded;
+  return settings;
+}
+#endif
+
+/// Calls f(call) for a scene of the program, and reports its errors.
+template <class Arguments, class Function>
+void trace(RTCScene handle, Arguments* arguments, Function&& f) {
+  guarded(device_of(handle), [&] {
+    const Scene& scene = object_of(handle);
+    Call call(scene, settings_of(scene, arguments));
+    f(call);
+  });
+}
+
+}  // namespace
+}  // namespace oktett::embree
+
+using namespace oktett::embree;
+
+// Embree 4 has the arguments behind the rays.
+#if OKTETT_EMBREE == 3
+#define OKTETT_SIGNATURE(Arguments, Rays) RTCScene scene, Arguments *arguments, Rays *rays
+#else
+#define OKTETT_SIGNATURE(Arguments, Rays) RTCScene scene, Rays *rays, Arguments *arguments
+#endif
+
+RTC_API void rtcIntersect1(OKTETT_SIGNATURE(ClosestArguments, RTCRayHit)) {
+  trace(scene, arguments, [&](Call& call) { call.closest(*rays); });
+}
+
+RTC_API void rtcOccluded1(OKTETT_SIGNATURE(AnyArguments, RTCRay)) {
+  trace(scene, arguments, [&](Call& call) { call.any(*rays); });
+}
+
+#define OKTETT_PACKET(n)                                                                              \
+  RTC_API void rtcIntersect##n(const int* valid, OKTETT_SIGNATURE(ClosestArguments, RTCRayHit##n)) {  \
+    trace(scene, arguments,                                                                           \
+          [&](Call& call) { closest_columns(call, valid, reinterpret_cast<RTCRayHitN*>(rays), n); }); \
+  }                                                                                                   \
+  RTC_API void rtcOccluded##n(const int* valid, OKTETT_SIGNATURE(AnyArguments, RTCRay##n)) {          \
+    trace(scene, arguments,                                                                           \
+          [&](Call& call) { any_columns(call, valid, reinterpret_cast<RTCRayN*>(rays), n); });        \
+  }
+OKTETT_PACKET(4)
+OKTETT_PACKET(8)
+OKTETT_PACKET(16)
+
+#if OKTETT_EMBREE == 3
+
+// ---- Streams.
+
+template <class T>
+static T* at(T* first, unsigned i, std::size_t stride) {
+  return reinterpret_cast<T*>(reinterpret_cast<std::byte*>(first) + i * stride);
+}
+
+RTC_API void rtcIntersect1M(RTCScene scene, RTCIntersectContext* context, RTCRayHit* rays, unsigned count,
+                            size_t stride) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) call.closest(*at(rays, i, stride));
+  });
+}
+
+RTC_API void rtcOccluded1M(RTCScene scene, RTCIntersectContext* context, RTCRay* rays, unsigned count,
+                           size_t stride) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) call.any(*at(rays, i, stride));
+  });
+}
+
+RTC_API void rtcIntersect1Mp(RTCScene scene, RTCIntersectContext* context, RTCRayHit** rays, unsigned count) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) call.closest(*rays[i]);
+  });
+}
+
+RTC_API void rtcOccluded1Mp(RTCScene scene, RTCIntersectContext* context, RTCRay** rays, unsigned count) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) call.any(*rays[i]);
+  });
+}
+
+RTC_API void rtcIntersectNM(RTCScene scene, RTCIntersectContext* context, RTCRayHitN* rays, unsigned n,
+                            unsigned count, size_t stride) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) closest_columns(call, nullptr, at(rays, i, stride), n);
+  });
+}
+
+RTC_API void rtcOccludedNM(RTCScene scene, RTCIntersectContext* context, RTCRayN* rays, unsigned n,
+                           unsigned count, size_t stride) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) any_columns(call, nullptr, at(rays, i, stride), n);
+  });
+}
+
+/// Ray i of columns of the program; those that may be left out are null.
+static RTCRay ray_of(const RTCRayNp& rays, unsigned i) {
+  RTCRay ray;
+  ray.org_x = rays.org_x[i], ray.org_y = rays.org_y[i], ray.org_z = rays.org_z[i];
+  ray.dir_x = rays.dir_x[i], ray.dir_y = rays.dir_y[i], ray.dir_z = rays.dir_z[i];
+  ray.tnear = rays.tnear != nullptr ? rays.tnear[i] : 0, ray.tfar = rays.tfar[i];
+  ray.time = rays.time != nullptr ? rays.time[i] : 0, ray.mask = rays.mask != nullptr ? rays.mask[i] : ~0u;
+  ray.id = rays.id != nullptr ? rays.id[i] : i, ray.flags = rays.flags != nullptr ? rays.flags[i] : 0;
+  return ray;
+}
+
+RTC_API void rtcIntersectNp(RTCScene scene, RTCIntersectContext* context, const RTCRayHitNp* rays,
+                            unsigned count) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) {
+      RTCRayHit one;
+      one.ray = ray_of(rays->ray, i);
+      one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      call.closest(one);
+      if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+      const RTCHitNp& out = rays->hit;
+      const auto set = [i](auto* column, auto value) {
+        if (column != nullptr) column[i] = value;
+      };
+      rays->ray.tfar[i] = one.ray.tfar;
+      set(out.Ng_x, one.hit.Ng_x), set(out.Ng_y, one.hit.Ng_y), set(out.Ng_z, one.hit.Ng_z);
+      set(out.u, one.hit.u), set(out.v, one.hit.v);
+      set(out.primID, one.hit.primID), set(out.geomID, one.hit.geomID);
+      for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level)
+        set(out.instID[level], one.hit.instID[level]);
+    }
+  });
+}
+
+RTC_API void rtcOccludedNp(RTCScene scene, RTCIntersectContext* context, const RTCRayNp* rays,
+                           unsigned count) {
+  trace(scene, context, [&](Call& call) {
+    for (unsigned i = 0; i < count; ++i) {
+      RTCRay one = ray_of(*rays, i);
+      call.any(one);
+      rays->tfar[i] = one.tfar;
+    }
+  });
+}
+
+#else
+
+// ---- Rays that a user geometry sends on into another scene.
+
+namespace oktett::embree {
+namespace {
+
+/// Sets the ray of a query to another one, and names one more instance, while it lives.
+class Forwarded {
+ public:
+  Forwarded(RTCRay& ray, const RTCRay& inner, QueryContext& context, unsigned instance, unsigned index)
+      : ray_(ray), before_(ray), context_(context), context_before_(context) {
+    ray.org_x = inner.org_x, ray.org_y = inner.org_y, ray.org_z = inner.org_z;
+    ray.dir_x = inner.dir_x, ray.dir_y = inner.dir_y, ray.dir_z = inner.dir_z;
+    ray.tnear = inner.tnear;
+    InstanceChain chain;
+    chain.push(instance, index);
+    set_instances(context, chain, instance_count(context_before_));
+  }
+  ~Forwarded() {
+    const float tfar = ray_.tfar;
+    ray_ = before_, ray_.tfar = tfar;
+    context_ = context_before_;
+  }
+  Forwarded(const Forwarded&) = delete;
+  Forwarded& operator=(const Forwarded&) = delete;
+
+ private:
+  RTCRay& ray_;
+  const RTCRay before_;
+  QueryContext& context_;
+  const QueryContext context_before_;
+};
+
+Settings settings_of(const RayQuery& query) {
+  return {query.context, query.filter, query.filter_all, query.intersect, query.occluded};
+}
+
+void forward_closest(const RTCIntersectFunctionNArguments* arguments, RTCScene handle, const RTCRay& ray,
+                     unsigned instance, unsigned index) {
+  guarded(device_of(handle), [&] {
+    RayQuery& query = *static_cast<const IntersectArguments*>(arguments)->query;
+    Call call(object_of(handle), settings_of(query));
+    const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
+    call.closest(*query.rayhit);
+  });
+}
+
+void forward_any(const RTCOccludedFunctionNArguments* arguments, RTCScene handle, const RTCRay& ray,
+                 unsigned instance, unsigned index) {
+  guarded(device_of(handle), [&] {
+    RayQuery& query = *static_cast<const OccludedArguments*>(arguments)->query;
+    Call call(object_of(handle), settings_of(query));
+    const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
+    call.any(*query.ray);
+  });
+}
+
+/// User geometries are asked with one ray at a time, which is the first of a packet.
+template <class Rays>
+RTCRay first_of(const int* valid, Rays* rays, unsigned n) {
+  unsigned i = 0;
+  while (i + 1 < n && valid[i] != -1) ++i;
+  RTCRay ray;
+  load(reinterpret_cast<const RTCRayN*>(rays), n, i, ray);
+  return ray;
+}
+
+}  // namespace
+}  // namespace oktett::embree
+
+RTC_API void rtcForwardIntersect1(const RTCIntersectFunctionNArguments* arguments, RTCScene scene,
+                                  RTCRay* ray, unsigned instance) {
+  forward_closest(arguments, scene, *ray, instance, 0);
+}
+RTC_API void rtcForwardIntersect1Ex(const RTCIntersectFunctionNArguments* arguments, RTCScene scene,
+                                    RTCRay* ray, unsigned instance, unsigned index) {
+  forward_closest(arguments, scene, *ray, instance, index);
+}
+RTC_API void rtcForwardOccluded1(const RTCOccludedFunctionNArguments* arguments, RTCScene scene, RTCRay* ray,
+                                 unsigned instance) {
+  forward_any(arguments, scene, *ray, instance, 0);
+}
+RTC_API void rtcForwardOccluded1Ex(const RTCOccludedFunctionNArguments* arguments, RTCScene scene,
+                                   RTCRay* ray, unsigned instance, unsigned index) {
+  forward_any(arguments, scene, *ray, instance, index);
+}
+
+#define OKTETT_FORWARD(n)                                                                                    \
+  RTC_API void rtcForwardIntersect##n(const int* valid, const RTCIntersectFunctionNArguments* arguments,     \
+                                      RTCScene scene, RTCRay##n* rays, unsigned instance) {                  \
+    forward_closest(arguments, scene, first_of(valid, rays, n), instance, 0);                                \
+  }                                                                                                          \
+  RTC_API void rtcForwardIntersect##n##Ex(const int* valid, const RTCIntersectFunctionNArguments* arguments, \
+                                          RTCScene scene, RTCRay##n* rays, unsigned instance,                \
+                                          unsigned index) {                                                  \
+    forward_closest(arguments, scene, first_of(valid, rays, n), instance, index);                            \
+  }                                                                                                          \
+  RTC_API void rtcForwardOccluded##n(const int* valid, const RTCOccludedFunctionNArguments* arguments,       \
+                                     RTCScene scene, RTCRay##n* rays, unsigned instance) {                   \
+    forward_any(arguments, scene, first_of(valid, rays, n), instance, 0);                                    \
+  }                                                                                                          \
+  RTC_API void rtcForwardOccluded##n##Ex(const int* valid, const RTCOccludedFunctionNArguments* arguments,   \
+                                         RTCScene scene, RTCRay##n* rays, unsigned instance,                 \
+                                         unsigned index) {                                                   \
+    forward_any(arguments, scene, first_of(valid, rays, n), instance, index);                                \
+  }
+OKTETT_FORWARD(4)
+OKTETT_FORWARD(8)
+OKTETT_FORWARD(16)
+
+#endif
