@@ -43,11 +43,9 @@ bool is_known(RTCGeometryType type) {
 
 }  // namespace
 
-Geometry::Geometry(Ref<RTCDeviceTy> owner, RTCGeometryType kind) : device(std::move(owner)), type(kind) {
-  if (!is_known(type))
-    fail(RTC_ERROR_UNKNOWN, std::string("Oktett has no ") + name_of(type) + " (geometry type " +
-                                std::to_string(static_cast<int>(type)) + ')');
-}
+Geometry::Geometry(Ref<RTCDeviceTy> owner, RTCGeometryType kind) : device(std::move(owner)), type(kind) {}
+
+bool Geometry::is_refused() const { return !is_known(type); }
 
 bool Geometry::is_instance() const {
 #if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
@@ -110,7 +108,7 @@ bool is_any_slot(RTCBufferType buffer) { return buffer == RTC_BUFFER_TYPE_VERTEX
 
 void check_slot(const Geometry& g, const Geometry::Slot& slot) {
   const unsigned count = slot_count(g, slot.first);
-  if (slot.second < count) return;
+  if (slot.second < count || g.is_refused()) return;
 #if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
   // Which scene each instance of an array shows.
   if (g.type == RTC_GEOMETRY_TYPE_INSTANCE_ARRAY && slot == Geometry::Slot{RTC_BUFFER_TYPE_INDEX, 0}) return;
@@ -128,7 +126,7 @@ void Geometry::set_view(const Slot& slot, View view) {
     if (slot.first != RTC_BUFFER_TYPE_FLAGS)
       fail(RTC_ERROR_INVALID_OPERATION, "buffers and strides must be multiples of 4 bytes");
   const RTCFormat format = format_of(*this, slot.first);
-  if (format != RTC_FORMAT_UNDEFINED && view.format != format)
+  if (format != RTC_FORMAT_UNDEFINED && view.format != format && !is_refused())
     fail(RTC_ERROR_INVALID_OPERATION, "the buffer has format " +
                                           std::to_string(static_cast<int>(view.format)) + ", expected " +
                                           std::to_string(static_cast<int>(format)));
@@ -156,6 +154,7 @@ const View* Geometry::find(RTCBufferType buffer, unsigned slot) const {
 // ---- Shapes.
 
 std::uint32_t Geometry::primitive_count() const {
+  if (is_refused()) return 0;
   const auto count = [&](RTCBufferType buffer) {
     const View* const view = find(buffer);
     return view != nullptr ? static_cast<std::uint32_t>(view->count) : 0u;
@@ -197,7 +196,7 @@ Made Geometry::make() const {
     case RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT:
       return make_points(*this);
     default:
-      return make_instance(*this);
+      return is_refused() ? Made{oktett::Geometry{SpheresShape{}}, nullptr, nullptr} : make_instance(*this);
   }
 }
 
@@ -210,7 +209,12 @@ using namespace oktett::embree;
 RTC_API RTCGeometry rtcNewGeometry(RTCDevice device, RTCGeometryType type) {
   return guarded(device_of(device), [&] {
     object_of(device);
-    return Shells<RTCGeometryTy>::make(std::make_unique<Geometry>(Ref<RTCDeviceTy>(device), type));
+    auto geometry = std::make_unique<Geometry>(Ref<RTCDeviceTy>(device), type);
+    if (geometry->is_refused())
+      Device::report(device_of(device), RTC_ERROR_INVALID_OPERATION,
+                     std::string("Oktett has no ") + name_of(type) + " (geometry type " +
+                         std::to_string(static_cast<int>(type)) + "); such geometries have no surface");
+    return Shells<RTCGeometryTy>::make(std::move(geometry));
   });
 }
 
@@ -560,11 +564,11 @@ RTC_API void rtcGetGeometryTransformEx(RTCGeometry geometry, unsigned index, flo
 
 // ---- What subdivision surfaces have.
 
-/// Reports that there are none.
+/// Reports that there are none, unless that was said when the geometry was made.
 static unsigned no_subdivision(RTCGeometry geometry) {
   return guarded(device_of(geometry), [&]() -> unsigned {
-    object_of(geometry);
-    fail(RTC_ERROR_INVALID_OPERATION, "Oktett has no subdivision surfaces");
+    if (object_of(geometry).is_refused()) return 0;
+    fail(RTC_ERROR_INVALID_OPERATION, "the geometry is no subdivision surface");
   });
 }
 

@@ -28,8 +28,11 @@ struct Made {
 
 class Geometry {
  public:
-  /// Throws ApiError if there is no geometry of this type.
   Geometry(Ref<RTCDeviceTy> owner, RTCGeometryType type);
+
+  /// Whether this type does not exist here. Such a geometry takes all settings and has no surface, so that programs
+  /// that do not look at errors run on.
+  bool is_refused() const;
 
   // ---- Buffers.
 

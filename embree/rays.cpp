@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "embree/callbacks.h"
 #include "embree/scene.h"
@@ -46,9 +47,69 @@ class Call {
     RTCRay& ray = rayhit.ray;
     if (!(ray.tnear <= ray.tfar)) return;
     RayQuery query = query_for(ray, &rayhit);
-    const SceneHit hit = closest_hit(traced_, to_ray(ray), context_for(ray, query), isa_);
+    keep(closest_hit(traced_, to_ray(ray), context_for(ray, query), isa_), rayhit);
+  }
+
+  void any(RTCRay& ray) {
+    if (!(ray.tnear <= ray.tfar)) return;
+    RayQuery query = query_for(ray, nullptr);
+    keep(any_hit(traced_, to_ray(ray), context_for(ray, query), isa_), ray);
+  }
+
+  /// Rays side by side.
+  void closest(std::span<RTCRayHit> rays) {
+    Batch batch;
+    SceneHit hits[kBatch];
+    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
+      const std::span<RTCRayHit> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
+      for (std::size_t i = 0; i < part.size(); ++i) batch.set(i, *this, part[i].ray, &part[i]);
+      closest_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(hits, part.size()),
+                  isa_);
+      for (std::size_t i = 0; i < part.size(); ++i) keep(hits[i], part[i]);
+    }
+  }
+
+  void any(std::span<RTCRay> rays) {
+    Batch batch;
+    std::uint8_t occluded[kBatch];
+    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
+      const std::span<RTCRay> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
+      for (std::size_t i = 0; i < part.size(); ++i) batch.set(i, *this, part[i], nullptr);
+      any_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(occluded, part.size()),
+              isa_);
+      for (std::size_t i = 0; i < part.size(); ++i) keep(occluded[i] != 0, part[i]);
+    }
+  }
+
+  /// So many rays go side by side.
+  static constexpr std::size_t kBatch = 64;
+
+ private:
+  class Batch {
+   public:
+    void set(std::size_t i, const Call& call, RTCRay& ray, RTCRayHit* rayhit) {
+      queries_[i] = call.query_for(ray, rayhit);
+      contexts_[i] = call.context_for(ray, queries_[i]);
+      rays_[i] = to_ray(ray);
+      // The ray that hits nothing.
+      if (!(ray.tnear <= ray.tfar)) rays_[i].tmax = -1;
+    }
+    std::span<const Ray> rays(std::size_t count) const { return {rays_, count}; }
+    std::span<const RayContext> contexts(std::size_t count) const { return {contexts_, count}; }
+
+   private:
+    Ray rays_[kBatch];
+    RayContext contexts_[kBatch];
+    RayQuery queries_[kBatch];
+  };
+
+  static void keep(bool occluded, RTCRay& ray) {
+    if (occluded) ray.tfar = -std::numeric_limits<float>::infinity();
+  }
+
+  void keep(const SceneHit& hit, RTCRayHit& rayhit) const {
     if (!hit.valid()) return;
-    ray.tfar = hit.t;
+    rayhit.ray.tfar = hit.t;
     RTCHit& out = rayhit.hit;
     out.Ng_x = hit.normal.x, out.Ng_y = hit.normal.y, out.Ng_z = hit.normal.z;
     out.u = hit.u, out.v = hit.v;
@@ -60,14 +121,6 @@ class Call {
     if (hit.chain.count > 0) set_instances(out, hit.chain, instance_count(*settings_.context));
   }
 
-  void any(RTCRay& ray) {
-    if (!(ray.tnear <= ray.tfar)) return;
-    RayQuery query = query_for(ray, nullptr);
-    if (any_hit(traced_, to_ray(ray), context_for(ray, query), isa_))
-      ray.tfar = -std::numeric_limits<float>::infinity();
-  }
-
- private:
   RayQuery query_for(RTCRay& ray, RTCRayHit* rayhit) const {
     return {&ray,
             rayhit,
@@ -129,23 +182,35 @@ void store(const RTCHit& from, RTCHitN* hits, unsigned n, unsigned i) {
 void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned n) {
   RTCRayN* const rays = RTCRayHitN_RayN(rayhits, n);
   RTCHitN* const hits = RTCRayHitN_HitN(rayhits, n);
-  for (unsigned i = 0; i < n; ++i) {
-    if (valid != nullptr && valid[i] != -1) continue;
-    RTCRayHit one;
-    load(rays, n, i, one.ray), load(hits, n, i, one.hit);
-    call.closest(one);
-    RTCRayN_tfar(rays, n, i) = one.ray.tfar;
-    store(one.hit, hits, n, i);
+  RTCRayHit batch[Call::kBatch];
+  unsigned number[Call::kBatch];
+  for (unsigned next = 0; next < n;) {
+    std::size_t count = 0;
+    for (; next < n && count < Call::kBatch; ++next) {
+      if (valid != nullptr && valid[next] != -1) continue;
+      load(rays, n, next, batch[count].ray), load(hits, n, next, batch[count].hit);
+      number[count++] = next;
+    }
+    call.closest(std::span(batch, count));
+    for (std::size_t k = 0; k < count; ++k) {
+      RTCRayN_tfar(rays, n, number[k]) = batch[k].ray.tfar;
+      store(batch[k].hit, hits, n, number[k]);
+    }
   }
 }
 
 void any_columns(Call& call, const int* valid, RTCRayN* rays, unsigned n) {
-  for (unsigned i = 0; i < n; ++i) {
-    if (valid != nullptr && valid[i] != -1) continue;
-    RTCRay one;
-    load(rays, n, i, one);
-    call.any(one);
-    RTCRayN_tfar(rays, n, i) = one.tfar;
+  RTCRay batch[Call::kBatch];
+  unsigned number[Call::kBatch];
+  for (unsigned next = 0; next < n;) {
+    std::size_t count = 0;
+    for (; next < n && count < Call::kBatch; ++next) {
+      if (valid != nullptr && valid[next] != -1) continue;
+      load(rays, n, next, batch[count]);
+      number[count++] = next;
+    }
+    call.any(std::span(batch, count));
+    for (std::size_t k = 0; k < count; ++k) RTCRayN_tfar(rays, n, number[k]) = batch[k].tfar;
   }
 }
 
@@ -233,6 +298,7 @@ static T* at(T* first, unsigned i, std::size_t stride) {
 RTC_API void rtcIntersect1M(RTCScene scene, RTCIntersectContext* context, RTCRayHit* rays, unsigned count,
                             size_t stride) {
   trace(scene, context, [&](Call& call) {
+    if (stride == sizeof(RTCRayHit)) return call.closest(std::span(rays, count));
     for (unsigned i = 0; i < count; ++i) call.closest(*at(rays, i, stride));
   });
 }
@@ -240,6 +306,7 @@ RTC_API void rtcIntersect1M(RTCScene scene, RTCIntersectContext* context, RTCRay
 RTC_API void rtcOccluded1M(RTCScene scene, RTCIntersectContext* context, RTCRay* rays, unsigned count,
                            size_t stride) {
   trace(scene, context, [&](Call& call) {
+    if (stride == sizeof(RTCRay)) return call.any(std::span(rays, count));
     for (unsigned i = 0; i < count; ++i) call.any(*at(rays, i, stride));
   });
 }

@@ -341,6 +341,16 @@ void check_sizes(std::size_t rays, std::size_t contexts, std::size_t answers, co
                 " contexts; expected one for each or one for all");
 }
 
+/// Whether the hits of these rays are those of the fixed structure alone, and nobody judges them.
+template <Query Q>
+bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
+  if (!scene.moving.empty() || scene.has_masks ||
+      (Q == Query::closest ? scene.has_closest_filters : scene.has_any_filters))
+    return false;
+  return std::all_of(contexts.begin(), contexts.end(),
+                     [](const RayContext& c) { return c.mask != 0 && c.filter == nullptr; });
+}
+
 /// Calls f(i) for each ray, in parallel if there are many.
 template <class Function>
 void for_each_ray(std::size_t count, Function&& f) {
@@ -350,6 +360,25 @@ void for_each_ray(std::size_t count, Function&& f) {
   };
   if (count <= kPieceRays) return piece(0);
   for_each_task(piece_count(count), piece);
+}
+
+/// The hits of rays with what does not move.
+void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<SceneHit> hits, Isa isa) {
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    static thread_local HitBatch found;
+    found.resize_uninitialized(piece.size);
+    closest_hit(*scene.fixed, piece, found.span(), isa);
+    for (std::size_t i = 0; i < piece.size; ++i) {
+      const Hit hit = found[i];
+      if (!hit.valid()) {
+        hits[begin + i] = {};
+        continue;
+      }
+      NamedHit named = name_hit(scene, rays[begin + i], ~0u, kNoChain, hit);
+      named.complete();
+      hits[begin + i] = named.placed.hit;
+    }
+  });
 }
 
 }  // namespace
@@ -365,6 +394,7 @@ bool any_hit(const TraceScene& scene, const Ray& ray, const RayContext& context,
 void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
                  std::span<SceneHit> hits, Isa isa) {
   check_sizes(rays.size(), contexts.size(), hits.size(), "closest_hit");
+  if (is_plain<Query::closest>(scene, contexts)) return plain_hits(scene, rays, hits, isa);
   for_each_ray(rays.size(), [&](std::size_t i) {
     hits[i] = closest_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
   });
@@ -373,6 +403,7 @@ void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<c
 void any_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
              std::span<std::uint8_t> occluded, Isa isa) {
   check_sizes(rays.size(), contexts.size(), occluded.size(), "any_hit");
+  if (is_plain<Query::any>(scene, contexts)) return any_hit(*scene.fixed, rays, occluded, isa);
   for_each_ray(rays.size(), [&](std::size_t i) {
     occluded[i] = any_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
   });
