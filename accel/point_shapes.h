@@ -25,7 +25,8 @@ using RoundPointKeys = std::vector<std::vector<RoundPoint>>;
 std::shared_ptr<const UserShape> make_moving_spheres(RoundPointKeys keys);
 
 /// Discs that face every ray. A hit is where the ray is nearest to the centre, if that is not farther away
-/// than the radius; it has u = v = 0 and the normal against the direction of the ray.
+/// than the radius and the ray begins farther away; it has u = v = 0 and the normal against the direction of
+/// the ray. So rays that begin on a disc do not meet it again.
 std::shared_ptr<const UserShape> make_facing_discs(RoundPointKeys keys);
 
 /// Discs with a normal at each key, of any length but zero, interpolated in float. A hit has u = v = 0.

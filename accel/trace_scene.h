@@ -71,8 +71,8 @@ class UserShape {
  public:
   virtual ~UserShape();
   virtual std::uint32_t primitive_count() const = 0;
-  /// At how many times, equally far apart from 0 to 1, the bounds are told; between them they are
-  /// interpolated linearly.
+  /// At how many times, equally far apart, the bounds are told; between them they are interpolated linearly.
+  /// RayContext::time is 0 at the first and 1 at the last.
   virtual std::uint32_t key_count() const { return 1; }
   /// The bounds of a primitive at a key. One whose bounds are empty or not finite at any key is left out.
   virtual Box bounds(std::uint32_t primitive, std::uint32_t key) const = 0;
@@ -146,6 +146,9 @@ struct SceneGeometry {
   std::variant<Geometry, MovingMesh, std::shared_ptr<const UserShape>, SceneInstance, SceneInstances> shape;
   std::uint32_t number = kNoId;  ///< the caller's; not kNoId, and no two of a scene have the same
   std::uint32_t mask = ~0u;      ///< see RayContext::mask
+  /// The times of the first and the last key of what has keys. Nothing of it is seen at other times, nor at `end`
+  /// if that is below 1, when what follows may begin.
+  float begin = 0, end = 1;
   /// Judge hits of closest_hit and any_hit; null: all count. They must outlive the scene.
   const HitFilter* closest_filter = nullptr;
   const HitFilter* any_filter = nullptr;

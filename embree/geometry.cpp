@@ -502,7 +502,8 @@ Affine transform_at(const Geometry& geometry, std::uint32_t index, float time) {
   if (index != 0) fail(RTC_ERROR_INVALID_ARGUMENT, "only an array has several instances");
   SceneInstance instance;
   instance.transforms = geometry.transforms, instance.turning = geometry.turning;
-  return map_at(instance, KeyTime::of(time, geometry.time_steps));
+  return map_at(instance,
+                KeyTime::of((time - geometry.begin) / (geometry.end - geometry.begin), geometry.time_steps));
 }
 
 }  // namespace oktett::embree

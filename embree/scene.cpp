@@ -88,6 +88,7 @@ void Scene::commit() {
   const auto traced = std::make_shared<Traced>();
   traced->device = device;
   std::vector<SceneGeometry> shapes;
+  std::size_t bytes = 0;
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     if (!geometries[i] || !geometries[i]->is_enabled) continue;
     Geometry& own = *geometries[i];
@@ -98,17 +99,19 @@ void Scene::commit() {
     SceneGeometry& shape = shapes.emplace_back();
     shape.shape = made.shape, shape.faces = made.faces;
     shape.number = static_cast<std::uint32_t>(i), shape.mask = own.mask, shape.user = &own;
+    shape.begin = own.begin, shape.end = own.end;
     if (own.type != RTC_GEOMETRY_TYPE_USER && !own.is_instance()) {
       if (own.closest_filter != nullptr) shape.closest_filter = GeometryFilter::instance(false);
       if (own.any_filter != nullptr) shape.any_filter = GeometryFilter::instance(true);
     }
-    if (made.mesh != nullptr) traced->bytes += made.mesh->bytes();
+    if (made.mesh != nullptr) bytes += made.mesh->bytes();
   }
   BuildOptions options;
   if (quality == RTC_BUILD_QUALITY_LOW || (flags & RTC_SCENE_FLAG_DYNAMIC) != 0)
     options.quality = BuildQuality::fast;
   if (quality == RTC_BUILD_QUALITY_HIGH) options.quality = BuildQuality::best;
-  device->count_memory(static_cast<ssize_t>(traced->bytes), false);
+  device->count_memory(static_cast<ssize_t>(bytes), false);
+  traced->bytes = bytes;
   traced->scene = build_trace_scene(std::move(shapes), options);
   report_progress(1);
   current_.store(traced.get(), std::memory_order_release);

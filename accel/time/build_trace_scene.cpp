@@ -1,6 +1,10 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "accel/accel_data.h"
 #include "accel/time/instance_motion.h"
@@ -95,6 +99,24 @@ bool is_fixed(const SceneGeometry& g) {
   return fixed;
 }
 
+Column<Vec3f> normals_of(const TriangleMesh& mesh, bool parallel) {
+  Column<Vec3f> normals;
+  normals.resize_uninitialized(mesh.triangle_count());
+  constexpr std::size_t kPiece = 1 << 14;
+  const auto piece = [&](std::size_t k) {
+    for (std::size_t t = k * kPiece; t < std::min(normals.size(), (k + 1) * kPiece); ++t) {
+      const std::uint32_t* const i = &mesh.indices[3 * t];
+      normals[t] = triangle_normal(mesh.positions[i[0]], mesh.positions[i[1]], mesh.positions[i[2]]);
+    }
+  };
+  const std::size_t pieces = (normals.size() + kPiece - 1) / kPiece;
+  if (parallel)
+    tbb::parallel_for(std::size_t{0}, pieces, piece);
+  else
+    for (std::size_t k = 0; k < pieces; ++k) piece(k);
+  return normals;
+}
+
 void build_fixed(TraceScene& scene, const BuildOptions& options) {
   std::vector<Geometry> fixed;
   const auto add = [&](std::uint32_t g, std::uint32_t index, Geometry geometry) {
@@ -122,6 +144,12 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   plain.mask = ~0u;
   scene.fixed = build_accel(std::move(fixed), plain);
   scene.bounds.grow(scene.fixed->bounds);
+  scene.normals.resize(scene.fixed->geometries.size());
+  for (std::size_t g = 0; g < scene.normals.size(); ++g) {
+    const auto* const shape = std::get_if<MeshGeometry>(&scene.fixed->geometries[g].shape);
+    if (shape != nullptr && scene.fixed->frames[g].identity)
+      scene.normals[g] = normals_of(*shape->mesh, options.parallel);
+  }
 }
 
 // ---- What moves.
@@ -157,7 +185,7 @@ class MovingSource final : public TimeSource {
 };
 
 void build_moving(TraceScene& scene, const BuildOptions& options) {
-  std::map<std::uint32_t, ItemTable> by_keys;
+  std::map<std::tuple<std::uint32_t, float, float>, ItemTable> by_keys;
   for (std::uint32_t g = 0; g < scene.geometries.size(); ++g) {
     const SceneGeometry& own = scene.geometries[g];
     if (is_fixed(own)) continue;
@@ -167,15 +195,18 @@ void build_moving(TraceScene& scene, const BuildOptions& options) {
                "a scene with something unbounded in it can be shown neither moving nor beside shapes "
                "of the program");
     });
-    ItemTable& items = by_keys[key_count(own)];
+    const std::uint32_t keys = key_count(own);
+    ItemTable& items =
+        by_keys[keys < 2 ? std::tuple{keys, 0.0f, 1.0f} : std::tuple{keys, own.begin, own.end}];
     const std::uint64_t end = items.count() + item_count(own);
     if (end >= kNoId) throw Error("more than 2^32 - 2 primitives in one scene");
     items.geometry.push_back(g), items.first.push_back(static_cast<std::uint32_t>(end));
   }
-  for (auto& [keys, items] : by_keys) {
+  for (auto& [range, items] : by_keys) {
     MovingPart& part = scene.moving.emplace_back();
     part.items = std::move(items);
-    part.tree = build_time_tree(keys, MovingSource(scene, part.items), options);
+    part.begin = std::get<1>(range), part.end = std::get<2>(range);
+    part.tree = build_time_tree(std::get<0>(range), MovingSource(scene, part.items), options);
     scene.bounds.grow(part.tree->bounds);
   }
 }
@@ -205,6 +236,7 @@ std::shared_ptr<const TraceScene> build_trace_scene(std::vector<SceneGeometry> g
   for (const SceneGeometry& g : scene->geometries) {
     if (g.number == kNoId || !numbers.insert(g.number).second)
       refuse(g, "each geometry has a number of its own, less than 2^32 - 1");
+    if (!(g.begin < g.end)) refuse(g, "its range of times ends before it begins");
     std::visit([&](const auto& shape) { check(g, shape); }, g.shape);
   }
   note_children(*scene);

@@ -148,8 +148,9 @@ class NearWalk {
   // ---- What moves.
 
   void moving(const MovingPart& part) {
+    if (!part.is_there(time_)) return;
     const TimeTree& tree = *part.tree;
-    const KeyTime at = KeyTime::of(time_, tree.keys);
+    const KeyTime at = KeyTime::of(part.own_time(time_), tree.keys);
     const std::uint32_t next = std::min(at.key + 1, tree.keys - 1);
     const auto box_at = [&](NodeRef ref, int i) {
       const Box a = box_of(tree.nodes[at.key][ref.node_index()], i);
@@ -196,7 +197,7 @@ class NearWalk {
       return tell(geometry, place.primitive);
     const auto* const one = std::get_if<SceneInstance>(&geometry.shape);
     enter(geometry, place.geometry, place.primitive,
-          one != nullptr ? map_at(*one, KeyTime::of(time_, key_count(*one)))
+          one != nullptr ? map_at(*one, KeyTime::of(part.own_time(time_), key_count(*one)))
                          : std::get<SceneInstances>(geometry.shape).places[place.primitive].transform);
   }
 

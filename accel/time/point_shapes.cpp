@@ -137,9 +137,11 @@ class FacingDiscs final : public RoundShape {
                    SceneHit& hit) const override {
     const RoundPointD p = point_at(primitive, time_of(context));
     const Line line(ray);
-    const double t = dot(p.center - line.o, line.d) / dot(line.d, line.d);
-    const Vec3d off = line.o + line.d * t - p.center;
-    if (!line.holds(t) || !(dot(off, off) <= p.radius * p.radius)) return false;
+    const Vec3d to = p.center - line.o;
+    const double t = dot(to, line.d) / dot(line.d, line.d);
+    const Vec3d off = line.d * t - to;
+    if (!(dot(to, to) > p.radius * p.radius) || !line.holds(t) || !(dot(off, off) <= p.radius * p.radius))
+      return false;
     hit.t = static_cast<float>(t), hit.u = hit.v = 0;
     hit.normal = -ray.direction;
     return true;

@@ -30,7 +30,19 @@ struct ItemTable {
 struct MovingPart {
   std::unique_ptr<const TimeTree> tree;
   ItemTable items;
+  float begin = 0, end = 1;  ///< SceneGeometry::begin and end
+
+  /// Whether there is anything at a time.
+  bool is_there(float time) const {
+    return tree->keys < 2 || (begin == 0 && end == 1) ||
+           (begin <= time && (time < end || (end >= 1 && time <= end)));
+  }
+  /// The time of which the keys are from 0 to 1.
+  float own_time(float time) const { return begin == 0 && end == 1 ? time : (time - begin) / (end - begin); }
 };
+
+/// (b - a) x (c - a).
+inline Vec3f triangle_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cross(b - a, c - a); }
 
 class TraceScene {
  public:
@@ -38,6 +50,9 @@ class TraceScene {
   std::shared_ptr<const Accel> fixed;  ///< never null
   /// Of geometry i of `fixed`: its place in `geometries`, and which of an array of instances it is.
   std::vector<ItemTable::Place> fixed_place;
+  /// The normals of the triangles of geometry i of `fixed`, if it is a mesh that stands as it is: a hit then reads
+  /// one place in memory instead of six.
+  std::vector<Column<Vec3f>> normals;
   std::vector<MovingPart> moving;
   Box bounds;                ///< at all times
   std::uint32_t levels = 0;  ///< of instances

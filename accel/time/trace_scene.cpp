@@ -42,8 +42,6 @@ void name_face(SceneHit& hit, const SceneGeometry& geometry, std::uint32_t primi
   if (geometry.faces != nullptr) geometry.faces->to_face(hit.primitive, hit.u, hit.v);
 }
 
-Vec3f triangle_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cross(b - a, c - a); }
-
 // ---- Hits in what does not move.
 
 /// A hit in the fixed structure of a scene, named, and seen from the innermost scene.
@@ -57,16 +55,11 @@ struct NamedHit {
 
   /// Sets the normal.
   void complete() {
-    const auto& shape = std::get<Geometry>(geometry->shape);
-    const auto* const mesh = std::get_if<MeshGeometry>(&shape.shape);
-    if (mesh == nullptr || !shape.transform.is_identity()) {
+    const std::uint32_t g = scene->fixed->geometry_of(own.item);
+    if (own.instance == kNoId && !scene->normals[g].empty())
+      placed.hit.normal = scene->normals[g][own.item - scene->fixed->first_item[g]];
+    else
       placed.hit.normal = surface_interaction(*scene->fixed, ray, own).geometric_normal;
-      return;
-    }
-    const std::uint32_t triangle = own.item - scene->fixed->first_item[scene->fixed->geometry_of(own.item)];
-    const std::uint32_t* const index = &mesh->mesh->indices[3 * std::size_t{triangle}];
-    const auto& p = mesh->mesh->positions;
-    placed.hit.normal = triangle_normal(p[index[0]], p[index[1]], p[index[2]]);
   }
 };
 
@@ -213,14 +206,16 @@ class SceneTracer {
   // ---- What moves.
 
   void moving(const MovingPart& part) {
+    if (!part.is_there(context_.time)) return;
     part_ = &part;
+    own_time_ = part.own_time(context_.time);
     tested_item_ = kNoId;
     const TimeCalls calls{this, judges_ ? accept : nullptr, test, &ended_};
     Ray ray = ray_;
     ray.tmax = std::min(ray.tmax, best_.hit.t);
     const TimeCode& code = time_code(isa_);
     const Hit hit =
-        (Q == Query::closest ? code.closest_hit : code.any_hit)(*part.tree, ray, context_.time, calls);
+        (Q == Query::closest ? code.closest_hit : code.any_hit)(*part.tree, ray, own_time_, calls);
     if (!hit.valid()) return;
     const ItemTable::Place place = part.items[hit.item];
     PlacedHit found;
@@ -233,8 +228,7 @@ class SceneTracer {
   SceneHit name_triangle(const ItemTable::Place& place, const Hit& hit) const {
     const SceneGeometry& geometry = scene_.geometries[place.geometry];
     const auto& shape = std::get<MovingMesh>(geometry.shape);
-    const KeyTime at =
-        KeyTime::of(context_.time, 1 + static_cast<std::uint32_t>(shape.later_positions.size()));
+    const KeyTime at = KeyTime::of(own_time_, 1 + static_cast<std::uint32_t>(shape.later_positions.size()));
     const Column<Vec3f>& a = at.key == 0 ? shape.mesh->positions : shape.later_positions[at.key - 1];
     const Column<Vec3f>& b = shape.later_positions[at.key];
     const auto corner = [&](std::size_t k) {
@@ -285,8 +279,10 @@ class SceneTracer {
     found.chain = chain_;
     found.t = ray.tmax;
     found.geometry = geometry.number, found.primitive = primitive, found.user = geometry.user;
-    if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context_, found)
-                              : shape.any_hit(primitive, ray, context_, found)))
+    RayContext context = context_;
+    context.time = own_time_;
+    if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context, found)
+                              : shape.any_hit(primitive, ray, context, found)))
       return false;
     if (Q == Query::closest && (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)))
       return false;
@@ -298,7 +294,7 @@ class SceneTracer {
     if (chain_.count == InstanceChain::kMost) return false;
     Affine map;
     if (const auto* const one = std::get_if<SceneInstance>(&geometry.shape))
-      map = map_at(*one, KeyTime::of(context_.time, key_count(*one)));
+      map = map_at(*one, KeyTime::of(own_time_, key_count(*one)));
     else
       map = std::get<SceneInstances>(geometry.shape).places[place.primitive].transform;
     const Affine to_child = map.inverse();
@@ -321,7 +317,8 @@ class SceneTracer {
   bool ended_ = false;  ///< a filter has ended a query for any hit
   PlacedHit best_;
   const MovingPart* part_ = nullptr;
-  SceneHit tested_;  ///< the hit that a filter or a test let pass last, with item tested_item_
+  float own_time_ = 0;  ///< in it
+  SceneHit tested_;     ///< the hit that a filter or a test let pass last, with item tested_item_
   std::uint32_t tested_item_ = kNoId;
 };
 
@@ -341,14 +338,36 @@ void check_sizes(std::size_t rays, std::size_t contexts, std::size_t answers, co
                 " contexts; expected one for each or one for all");
 }
 
-/// Whether the hits of these rays are those of the fixed structure alone, and nobody judges them.
+/// Whether the hits of a ray are those of the fixed structure alone, and nobody judges them.
+template <Query Q>
+bool is_plain(const TraceScene& scene, const RayContext& context) {
+  return scene.moving.empty() && !scene.has_masks && context.mask != 0 && context.filter == nullptr &&
+         !(Q == Query::closest ? scene.has_closest_filters : scene.has_any_filters);
+}
 template <Query Q>
 bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
-  if (!scene.moving.empty() || scene.has_masks ||
-      (Q == Query::closest ? scene.has_closest_filters : scene.has_any_filters))
-    return false;
   return std::all_of(contexts.begin(), contexts.end(),
-                     [](const RayContext& c) { return c.mask != 0 && c.filter == nullptr; });
+                     [&](const RayContext& c) { return is_plain<Q>(scene, c); });
+}
+
+/// Names a hit of the fixed structure.
+SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const Hit& hit) {
+  if (!hit.valid()) return {};
+  const Accel& accel = *scene.fixed;
+  if (hit.instance == kNoId) {
+    const std::uint32_t g = accel.geometry_of(hit.item);
+    if (const Column<Vec3f>& normals = scene.normals[g]; !normals.empty()) {
+      SceneHit out;
+      out.t = hit.t, out.u = hit.u, out.v = hit.v;
+      const std::uint32_t triangle = hit.item - accel.first_item[g];
+      out.normal = normals[triangle];
+      name_face(out, scene.geometries[scene.fixed_place[g].geometry], triangle);
+      return out;
+    }
+  }
+  NamedHit named = name_hit(scene, ray, ~0u, kNoChain, hit);
+  named.complete();
+  return named.placed.hit;
 }
 
 /// Calls f(i) for each ray, in parallel if there are many.
@@ -368,26 +387,21 @@ void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<Sc
     static thread_local HitBatch found;
     found.resize_uninitialized(piece.size);
     closest_hit(*scene.fixed, piece, found.span(), isa);
-    for (std::size_t i = 0; i < piece.size; ++i) {
-      const Hit hit = found[i];
-      if (!hit.valid()) {
-        hits[begin + i] = {};
-        continue;
-      }
-      NamedHit named = name_hit(scene, rays[begin + i], ~0u, kNoChain, hit);
-      named.complete();
-      hits[begin + i] = named.placed.hit;
-    }
+    for (std::size_t i = 0; i < piece.size; ++i)
+      hits[begin + i] = plain_hit(scene, rays[begin + i], found[i]);
   });
 }
 
 }  // namespace
 
 SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
+  if (is_plain<Query::closest>(scene, context))
+    return plain_hit(scene, ray, closest_hit(*scene.fixed, ray, isa));
   return trace<Query::closest>(scene, ray, context, isa);
 }
 
 bool any_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
+  if (is_plain<Query::any>(scene, context)) return any_hit(*scene.fixed, ray, isa);
   return trace<Query::any>(scene, ray, context, isa).valid();
 }
 
