@@ -113,8 +113,8 @@ class QuadFaces final : public FaceMap {
 
 class TraceScene;
 
-/// A map that turns: at a key it is p -> shift_after + R(quaternion) (scale_skew p + shift_before). Between
-/// keys the quaternion turns at constant speed the shorter way (Shoemake 1985), the rest is linear.
+/// A map that turns: at a key it is p -> outer + R(quaternion) inner(p). Between keys the quaternion turns at
+/// constant speed the shorter way (Shoemake 1985), the rest is linear.
 struct TurningMap {
   double quaternion[4] = {1, 0, 0, 0};  ///< real part first; of any length but zero
   Affine inner;                         ///< applied before the rotation
@@ -145,7 +145,8 @@ struct SceneGeometry {
   std::variant<Geometry, MovingMesh, std::shared_ptr<const UserShape>, SceneInstance, SceneInstances> shape;
   std::uint32_t number = kNoId;  ///< the caller's; not kNoId, and no two of a scene have the same
   std::uint32_t mask = ~0u;      ///< see RayContext::mask
-  /// Judge hits of closest_hit and any_hit; null: all count. They must outlive the scene.
+  /// Judge hits of closest_hit and any_hit; null: all count. They must outlive the scene. Those of instances
+  /// are never asked.
   const HitFilter* closest_filter = nullptr;
   const HitFilter* any_filter = nullptr;
   std::shared_ptr<const FaceMap> faces;  ///< of meshes; null: a primitive is a triangle
@@ -155,9 +156,9 @@ struct SceneGeometry {
 /// not move and is no code of the program stands in one Accel and is traced as such; the rest in trees of its
 /// own, whose boxes move along straight lines with it.
 ///
-/// Of hits at equal distance those outside of instances count first, then those of the geometry that was
-/// given first, then the lowest primitive. User shapes are asked with a ray that ends at the nearest hit so
-/// far.
+/// Of hits at equal distance those in no instance, combination or sphere that a transform distorts count
+/// first, then those of the geometry that was given first, then the lowest primitive. User shapes are asked
+/// with a ray that ends at the nearest hit so far.
 ///
 /// Throws Error if there are more than 2^32 - 2 primitives, numbers are doubled, keys do not fit, or
 /// instances are nested deeper than InstanceChain::kMost.

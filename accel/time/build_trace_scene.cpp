@@ -158,9 +158,8 @@ class MovingSource final : public TimeSource {
 
 void build_moving(TraceScene& scene, const BuildOptions& options) {
   std::map<std::uint32_t, ItemTable> by_keys;
-  for (std::uint32_t g = 0; g < scene.geometries.size(); ++g) {
+  const auto add = [&](std::uint32_t g) {
     const SceneGeometry& own = scene.geometries[g];
-    if (is_fixed(own)) continue;
     each_child(own, [&](const TraceScene& child) {
       if (!child.fixed->unbounded.empty())
         refuse(own,
@@ -171,7 +170,11 @@ void build_moving(TraceScene& scene, const BuildOptions& options) {
     const std::uint64_t end = items.count() + item_count(own);
     if (end >= kNoId) throw Error("more than 2^32 - 2 primitives in one scene");
     items.geometry.push_back(g), items.first.push_back(static_cast<std::uint32_t>(end));
-  }
+  };
+  // At equal distance the lowest item counts, and instances come last.
+  for (const bool instances : {false, true})
+    for (std::uint32_t g = 0; g < scene.geometries.size(); ++g)
+      if (!is_fixed(scene.geometries[g]) && is_instance(scene.geometries[g]) == instances) add(g);
   for (auto& [keys, items] : by_keys) {
     MovingPart& part = scene.moving.emplace_back();
     part.items = std::move(items);
