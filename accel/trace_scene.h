@@ -88,7 +88,8 @@ class UserShape {
 
 /// A mesh whose vertices move along straight lines between keys, which are equally far apart from time 0 to
 /// 1. At time s between two of them a vertex is at (1 - f) a + f b, computed in float, where f = s (keys - 1)
-/// less the number of the first; hits are the bits of a mesh with these positions.
+/// less the number of the first; hits are the bits of a mesh with these positions. Triangles that are not
+/// finite at some key are left out.
 struct MovingMesh {
   std::shared_ptr<const TriangleMesh> mesh;    ///< its positions are those of the first key
   std::vector<Column<Vec3f>> later_positions;  ///< of the other keys; at least one, as many as `mesh` has

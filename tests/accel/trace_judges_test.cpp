@@ -40,9 +40,7 @@ std::vector<Scene> ways(const SceneGeometry& g) {
   const std::vector<Affine> moves{Affine{}, Affine{}};
   const Scene plain = build_trace_scene({g});
   const Scene shown = build_trace_scene({thing(SceneInstance{plain, {Affine{}}, {}}, 70)});
-  return {plain,
-          shown,
-          build_trace_scene({thing(SceneInstance{plain, moves, {}}, 71)}),
+  return {plain, shown, build_trace_scene({thing(SceneInstance{plain, moves, {}}, 71)}),
           build_trace_scene({thing(SceneInstances{{plain}, {{Affine{}, 0}}}, 72)}),
           build_trace_scene({thing(SceneInstance{shown, moves, {}}, 73)})};
 }
@@ -79,7 +77,7 @@ class Told final : public HitFilter {
 const std::vector<float> kBoth{8, 10}, kFirst{8};
 
 TEST(TraceJudges, EachHitIsJudgedOnceUntilOneIsAccepted) {
-  const Told none([](SceneHit&) { return false; }), far([](SceneHit& h) { return h.t > 9; });
+  const Told none([](SceneHit&) { return false; }), far([](SceneHit&h) { return h.t > 9; });
   for (SceneGeometry g : cubes())
     for (const bool of_query : {false, true}) {
       for (const Told* filter : {&none, &far}) {
@@ -113,16 +111,16 @@ TEST(TraceJudges, FiltersOfOtherQueriesAreNotAsked) {
 }
 
 TEST(TraceJudges, TheFilterOfTheQueryJudgesWhatThatOfTheGeometryLetsPass) {
-  const Told far([](SceneHit& h) { return h.t > 9; }), none([](SceneHit&) { return false; });
+  const Told far([](SceneHit&h) { return h.t > 9; }), none([](SceneHit&) { return false; });
   for (SceneGeometry g : cubes()) {
     g.closest_filter = g.any_filter = &far;
     for (const Scene& scene : ways(g)) {
       EXPECT_FALSE(closest_hit(*scene, along_x(), {0, ~0u, &none}).valid());
       EXPECT_EQ(far.taken(), kBoth);
- EXPECT_EQ(none.taken(), std::vector<float>{10});
+      EXPECT_EQ(none.taken(), std::vector<float>{10});
       EXPECT_FALSE(any_hit(*scene, along_x(), {0, ~0u, &none}));
       EXPECT_EQ(far.taken(), kBoth);
- EXPECT_EQ(none.taken(), std::vector<float>{10});
+      EXPECT_EQ(none.taken(), std::vector<float>{10});
     }
   }
 }
@@ -138,7 +136,7 @@ TEST(TraceJudges, AFilterCanEndTheRay) {
       const SceneHit hit = closest_hit(*scene, along_x());
       EXPECT_FALSE(hit.valid());
       EXPECT_EQ(hit.t, kInf);
- EXPECT_EQ(hit.chain.count, 0u);
+      EXPECT_EQ(hit.chain.count, 0u);
       EXPECT_FALSE(any_hit(*scene, along_x()));
     }
     // What is nearer still counts; what is behind does not.
@@ -161,11 +159,11 @@ TEST(TraceJudges, AFilterCanChangeAllButTheDistance) {
     for (const Scene& scene : ways(g)) {
       const SceneHit hit = closest_hit(*scene, along_x(), {1, ~0u, &changes});
       EXPECT_EQ(hit.t, 8);
- EXPECT_EQ(hit.u, 0.25f);
- EXPECT_EQ(hit.v, 0.75f);
+      EXPECT_EQ(hit.u, 0.25f);
+      EXPECT_EQ(hit.v, 0.75f);
       EXPECT_EQ(hit.normal, (Vec3f{1, 2, 3}));
- EXPECT_EQ(hit.primitive, 1234u);
- EXPECT_EQ(hit.geometry, 77u);
+      EXPECT_EQ(hit.primitive, 1234u);
+      EXPECT_EQ(hit.geometry, 77u);
     }
 }
 
@@ -176,10 +174,11 @@ TEST(TraceJudges, FiltersSeeTheRayOfTheInnermostScene) {
     g.closest_filter = &all;
     const Scene child = build_trace_scene({g});
     for (const std::vector<Affine>& keys : {std::vector<Affine>{map}, {map, map}}) {
-      const SceneHit hit = closest_hit(*build_trace_scene({thing(SceneInstance{child, keys, {}})}), along_x());
+      const SceneHit hit =
+          closest_hit(*build_trace_scene({thing(SceneInstance{child, keys, {}})}), along_x());
       EXPECT_EQ(hit.t, 9);
       EXPECT_EQ(all.ray.origin, (Vec3f{-5.5f, 0.05f, 0.1f}));
- EXPECT_EQ(all.ray.direction, (Vec3f{0.5f, 0, 0}));
+      EXPECT_EQ(all.ray.direction, (Vec3f{0.5f, 0, 0}));
     }
   }
 }
@@ -210,7 +209,7 @@ TEST(TraceJudges, MasksHideGeometriesAndInstancesAtEveryLevel) {
 class Balls final : public UserShape {
  public:
   std::vector<SphereShape> balls;
-  Vec3d way;              ///< by which the last key is off
+  Vec3d way;  ///< by which the last key is off
   std::uint32_t keys = 1;
   std::function<Box(Box)> bounded = [](Box b) { return b; };
   std::function<void(const Ray&, SceneHit&)> spoil = [](const Ray&, SceneHit&) {};
@@ -247,7 +246,8 @@ TEST(TraceJudges, SpheresOfTheProgramAreThoseOfTheLibrary) {
     auto balls = std::make_shared<Balls>();
     balls->keys = keys, balls->way = {1, -0.5, 0.25};
     SpheresShape spheres;
-    for (int i = 0; i < 30; ++i) balls->balls.push_back({Vec3d(dice.vec(2)), 0.1 + 0.4 * static_cast<double>(dice())});
+    for (int i = 0; i < 30; ++i)
+      balls->balls.push_back({Vec3d(dice.vec(2)), 0.1 + 0.4 * static_cast<double>(dice())});
     const std::shared_ptr<const UserShape> shape = balls;
     const std::vector<Scene> scenes = ways(thing(shape, 9));
     int hits = 0;
@@ -269,7 +269,7 @@ TEST(TraceJudges, SpheresOfTheProgramAreThoseOfTheLibrary) {
         if (!hit.valid()) continue;
         ASSERT_NEAR(hit.t, expected.t, 1e-5 * expected.t);
         ASSERT_EQ(hit.primitive, expected.item);
- ASSERT_EQ(hit.geometry, 9u);
+        ASSERT_EQ(hit.geometry, 9u);
       }
     }
     EXPECT_GT(hits, 150);
@@ -303,7 +303,8 @@ TEST(TraceJudges, ShapesAreAskedWithRaysThatEndAtTheNearestHit) {
   balls->spoil = [&](const Ray& ray, SceneHit&) { end = ray.tmax; };
   EXPECT_EQ(closest_hit(*build_trace_scene({thing(shape, 1)}), along_x(40)).geometry, 1u);
   EXPECT_EQ(end, 40);
-  const SceneGeometry before = thing(Geometry{MeshGeometry{&cube()}, Affine::translation({6, 0, 0}), kNoId}, 2);
+  const SceneGeometry before =
+      thing(Geometry{MeshGeometry{&cube()}, Affine::translation({6, 0, 0}), kNoId}, 2);
   EXPECT_EQ(closest_hit(*build_trace_scene({thing(shape, 1), before}), along_x()).geometry, 1u);
   EXPECT_EQ(end, 14);
 }
@@ -315,11 +316,12 @@ TEST(TraceJudges, ShapesAtEqualDistanceCountInTheirOrder) {
   for (const Scene& scene : ways(thing(shape, 1))) EXPECT_EQ(closest_hit(*scene, along_x()).primitive, 0u);
   const SceneHit hit = closest_hit(*build_trace_scene({thing(shape, 8), thing(shape, 3)}), along_x());
   EXPECT_EQ(hit.geometry, 8u);
- EXPECT_EQ(hit.primitive, 0u);
+  EXPECT_EQ(hit.primitive, 0u);
 }
 
 TEST(TraceJudges, PrimitivesWithoutBoundsAreLeftOut) {
-  const Box wrong[] = {Box{}, {{kNan, -1, -1}, {1, 1, 1}}, {{-1, -1, -1}, {1, kInf, 1}}, {{1, 1, 1}, {-1, -1, -1}}};
+  const Box wrong[] = {
+      Box{}, {{kNan, -1, -1}, {1, 1, 1}}, {{-1, -1, -1}, {1, kInf, 1}}, {{1, 1, 1}, {-1, -1, -1}}};
   for (const Box& box : wrong)
     for (const std::uint32_t keys : {1u, 3u}) {
       auto balls = std::make_shared<Balls>();

@@ -38,9 +38,7 @@ SceneInstance shown(Scene child, std::vector<Affine> transforms = {Affine{}}) {
   return {std::move(child), std::move(transforms), {}};
 }
 
-Ray along_x(float y = 0.1f, float z = 0.2f, float tmax = kInf) {
-  return {{-9, y, z}, 0, {1, 0, 0}, tmax};
-}
+Ray along_x(float y = 0.1f, float z = 0.2f, float tmax = kInf) { return {{-9, y, z}, 0, {1, 0, 0}, tmax}; }
 
 /// Positions between keys as MovingMesh says, in float.
 TriangleMesh mesh_at(const MovingMesh& moving, float time) {
@@ -123,13 +121,14 @@ TEST(TraceScenes, AMovingMeshHasTheBitsOfTheInterpolatedOne) {
       const MovingMesh moving =
           wobbling(closed ? make_icosphere(2).mesh : litter(150, dice), keys, closed ? 0.3f : 3.0f, dice);
       const Scene scene = build_trace_scene({thing(moving, 4)});
-      for (const float time :
-           {0.0f, 1.0f, 0.25f, 0.5f, 0.75f, 0x1p-149f, 1 - 0x1p-24f, dice(), dice(), kNan, -2.0f, 3.0f, kInf}) {
+      for (const float time : {0.0f, 1.0f, 0.25f, 0.5f, 0.75f, 0x1p-149f, 1 - 0x1p-24f, dice(), dice(), kNan,
+                               -2.0f, 3.0f, kInf}) {
         const TriangleMesh mesh = mesh_at(moving, time);
         const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
         for (int i = 0; i < 40; ++i) {
           Vec3f target = dice.vec(1.5f);
-          const Vec3f corner = mesh.positions[static_cast<std::size_t>(dice.below(480)) % mesh.positions.size()];
+          const Vec3f corner =
+              mesh.positions[static_cast<std::size_t>(dice.below(480)) % mesh.positions.size()];
           if (i % 2 == 0 && corner.y == corner.y) target = corner;
           const Vec3f from = dice.vec(5);
           const Ray ray{from, 0, target - from, i % 3 == 0 ? 1.0f : kInf};
@@ -137,13 +136,15 @@ TEST(TraceScenes, AMovingMeshHasTheBitsOfTheInterpolatedOne) {
           hits += expected.valid();
           for (const Isa isa : available_isas()) {
             const SceneHit hit = closest_hit(*scene, ray, {time}, isa);
-            ASSERT_TRUE(same(hit, expected)) << to_string(isa) << " time " << time << " t " << hit.t << " of "
-                                             << hit.primitive << ", not " << expected.t << " of " << expected.item;
+            ASSERT_TRUE(same(hit, expected))
+                << to_string(isa) << " time " << time << " t " << hit.t << " of " << hit.primitive << ", not "
+                << expected.t << " of " << expected.item;
             ASSERT_EQ(any_hit(*scene, ray, {time}, isa), expected.valid()) << to_string(isa);
             if (!hit.valid()) continue;
             ASSERT_EQ(hit.geometry, 4u);
             const std::uint32_t* const index = &mesh.indices[3 * std::size_t{hit.primitive}];
-            const Vec3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]], &c = mesh.positions[index[2]];
+            const Vec3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]],
+                        &c = mesh.positions[index[2]];
             ASSERT_EQ(hit.normal, cross(b - a, c - a));
           }
         }
@@ -157,7 +158,8 @@ TEST(TraceScenes, ClosedMovingMeshesHaveNoHoles) {
   for (const TriangleMesh& start : {make_icosphere(2).mesh, make_cube().mesh, make_globe(9, 6).mesh}) {
     const MovingMesh moving = wobbling(start, 3, 0.2f, dice);
     const Scene scene = build_trace_scene({thing(moving)});
-    const Scene inner = build_trace_scene({thing(shown(scene, {Affine{}, Affine::translation({0.1, 0, 0})}))});
+    const Scene inner =
+        build_trace_scene({thing(shown(scene, {Affine{}, Affine::translation({0.1, 0, 0})}))});
     for (int i = 0; i < 400; ++i) {
       const float time = i % 4 == 0 ? 0.5f : dice();
       const TriangleMesh mesh = mesh_at(moving, time);
@@ -205,7 +207,8 @@ TEST(TraceScenes, TurningMapsTurnAtConstantSpeed) {
     TurningMap &a = instance.turning[0], &b = instance.turning[1];
     for (TurningMap* map : {&a, &b}) {
       map->outer = dice.vec(3);
-      map->inner = Affine::translation(dice.vec(2)) * Affine::scaling({2, 0.5, 1}) * Affine::rotation(dice.vec(40));
+      map->inner =
+          Affine::translation(dice.vec(2)) * Affine::scaling({2, 0.5, 1}) * Affine::rotation(dice.vec(40));
     }
     // The second rotation is the first, followed by one about `axis`; of either sign, and any length.
     quaternion(a, axis0, start, dice.range(0.1, 5));
@@ -324,15 +327,15 @@ TEST(TraceScenes, WhatIsFlatAtAMomentIsNotThere) {
 
 TEST(TraceScenes, BoundsAreThoseOfTheFirstKeyAndTheLast) {
   const Scene child = build_trace_scene({thing(ball_at({}))});
-  const Scene scene = build_trace_scene({thing(shown(child, {Affine{}, Affine::translation({8, 0, 0})}), 1),
-                                         thing(ball_at({0, 5, 0}), 2)});
+  const Scene scene = build_trace_scene(
+      {thing(shown(child, {Affine{}, Affine::translation({8, 0, 0})}), 1), thing(ball_at({0, 5, 0}), 2)});
   const SceneBounds b = bounds(*scene);
   EXPECT_NEAR(b.first.lo.x, -1, 1e-4);
- EXPECT_NEAR(b.first.hi.x, 1, 1e-4);
- EXPECT_NEAR(b.last.hi.x, 9, 1e-4);
+  EXPECT_NEAR(b.first.hi.x, 1, 1e-4);
+  EXPECT_NEAR(b.last.hi.x, 9, 1e-4);
   EXPECT_NEAR(b.last.lo.x, -1, 1e-4);
- EXPECT_NEAR(b.first.hi.y, 6, 1e-4);
- EXPECT_NEAR(b.last.hi.y, 6, 1e-4);
+  EXPECT_NEAR(b.first.hi.y, 6, 1e-4);
+  EXPECT_NEAR(b.last.hi.y, 6, 1e-4);
 }
 
 // ---- Equal distances.
@@ -384,13 +387,12 @@ TEST(TraceScenes, DistortedSpheresMirroredMeshesAndCombinationsAreNamedAndHaveNo
   const OracleMesh cube = make_cube();
   const Affine up = Affine::translation({0, 0, 6});
   const std::vector<SceneGeometry> things{
-      thing(Geometry{spheres, flat, kNoId}, 1),
-      thing(Geometry{CsgGeometry{dented}, up, kNoId}, 2),
+      thing(Geometry{spheres, flat, kNoId}, 1), thing(Geometry{CsgGeometry{dented}, up, kNoId}, 2),
       thing(Geometry{MeshGeometry{&cube.mesh}, up * up * Affine::scaling({1, -1, 1}), kNoId}, 3),
       thing(Geometry{ExactShape{TorusShape{}}, up * up * up, kNoId}, 4)};
   const Scene plain = build_trace_scene(things);
-  for (const Scene& scene :
-       {plain, build_trace_scene({thing(shown(plain))}), build_trace_scene({thing(shown(plain, {{}, {}}))})}) {
+  for (const Scene& scene : {plain, build_trace_scene({thing(shown(plain))}),
+                             build_trace_scene({thing(shown(plain, {{}, {}}))})}) {
     for (std::uint32_t i = 0; i < 4; ++i) {
       const SceneHit hit = closest_hit(*scene, along_x(3.0f * static_cast<float>(i), 0.2f));
       ASSERT_EQ(hit.geometry, 1u);
@@ -401,17 +403,17 @@ TEST(TraceScenes, DistortedSpheresMirroredMeshesAndCombinationsAreNamedAndHaveNo
     }
     const SceneHit dent = closest_hit(*scene, along_x(0, 6.1f));
     EXPECT_EQ(dent.geometry, 2u);
- EXPECT_EQ(dent.primitive, 0u);
- EXPECT_GT(dent.t, 8);
+    EXPECT_EQ(dent.primitive, 0u);
+    EXPECT_GT(dent.t, 8);
     EXPECT_LT(dent.normal.x, 0);
     const SceneHit mirrored = closest_hit(*scene, along_x(0.1f, 12));
     EXPECT_EQ(mirrored.geometry, 3u);
- EXPECT_EQ(mirrored.t, 8);
+    EXPECT_EQ(mirrored.t, 8);
     // (b - a) x (c - a) of what is mirrored points inwards.
     EXPECT_EQ(mirrored.normal, (Vec3f{4, 0, 0}));
     const SceneHit torus = closest_hit(*scene, along_x(0, 18));
     EXPECT_EQ(torus.geometry, 4u);
- EXPECT_NEAR(torus.normal.x, -1, 1e-5);
+    EXPECT_NEAR(torus.normal.x, -1, 1e-5);
   }
 }
 
@@ -431,7 +433,7 @@ TEST(TraceScenes, QuadsAreFacesOfTwoTriangles) {
       const SceneHit hit = closest_hit(*scene, {{x, y, 1}, 0, {0, 0, -1}, kInf}, {dice()});
       ASSERT_EQ(hit.primitive, 0u);
       ASSERT_NEAR(hit.u, x, 1e-5);
- ASSERT_NEAR(hit.v, y, 1e-5);
+      ASSERT_NEAR(hit.v, y, 1e-5);
     }
   }
 }
@@ -480,7 +482,8 @@ TEST(TraceScenes, WhatDoesNotFitIsRefused) {
 TEST(TraceScenes, EmptyScenesAreMissed) {
   const Scene empty = build_trace_scene({});
   const TriangleMesh nothing;
-  const Scene scenes[] = {empty, build_trace_scene({thing(shown(empty))}),
+  const Scene scenes[] = {empty,
+                          build_trace_scene({thing(shown(empty))}),
                           build_trace_scene({thing(shown(empty, {Affine{}, Affine{}}))}),
                           build_trace_scene({thing(SceneInstances{})}),
                           build_trace_scene({thing(Geometry{MeshGeometry{&nothing}, {}, kNoId})}),
@@ -494,8 +497,8 @@ TEST(TraceScenes, EmptyScenesAreMissed) {
 
 TEST(TraceScenes, BatchesHaveTheHitsOfSingleRays) {
   Roll dice(7);
-  const Scene scene = build_trace_scene({thing(wobbling(make_icosphere(2).mesh, 3, 0.3f, dice), 1, 1),
-                                         thing(ball_at({2, 0, 0}), 2, 2)});
+  const Scene scene = build_trace_scene(
+      {thing(wobbling(make_icosphere(2).mesh, 3, 0.3f, dice), 1, 1), thing(ball_at({2, 0, 0}), 2, 2)});
   std::vector<Ray> rays;
   std::vector<RayContext> contexts;
   for (int i = 0; i < 10000; ++i) {
@@ -510,7 +513,7 @@ TEST(TraceScenes, BatchesHaveTheHitsOfSingleRays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const SceneHit one = closest_hit(*scene, rays[i], contexts[i]);
     ASSERT_EQ(one.t, hits[i].t);
- ASSERT_EQ(one.geometry, hits[i].geometry);
+    ASSERT_EQ(one.geometry, hits[i].geometry);
     ASSERT_EQ(occluded[i] != 0, one.valid());
     count += one.valid();
   }

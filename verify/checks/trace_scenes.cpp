@@ -27,7 +27,8 @@ constexpr int kTimes = 5, kRaysAtOnce = 16;
 // ---- Filters that judge by the numbers of a hit.
 
 /// A question that a filter was asked.
-using Question = std::tuple<const HitFilter*, std::vector<std::uint32_t>, std::uint32_t, std::uint32_t, float>;
+using Question =
+    std::tuple<const HitFilter*, std::vector<std::uint32_t>, std::uint32_t, std::uint32_t, float>;
 
 Question question(const HitFilter* filter, const SceneHit& hit) {
   std::vector<std::uint32_t> chain;
@@ -73,12 +74,10 @@ class NumberFilter final : public HitFilter {
   Rule rule_;
 };
 
-const NumberFilter kFilters[] = {NumberFilter(NumberFilter::everything),
-                                 NumberFilter(NumberFilter::odd_primitives),
-                                 NumberFilter(NumberFilter::nothing),
-                                 NumberFilter(NumberFilter::some_distances),
-                                 NumberFilter(NumberFilter::ends),
-                                 NumberFilter(NumberFilter::changes)};
+const NumberFilter kFilters[] = {
+    NumberFilter(NumberFilter::everything), NumberFilter(NumberFilter::odd_primitives),
+    NumberFilter(NumberFilter::nothing),    NumberFilter(NumberFilter::some_distances),
+    NumberFilter(NumberFilter::ends),       NumberFilter(NumberFilter::changes)};
 
 // ---- Time, as accel/trace_scene.h states it.
 
@@ -183,8 +182,8 @@ class Parts {
   }
 
   Affine map_of(const SceneInstance& instance) const {
-    const auto keys = static_cast<std::uint32_t>(
-        instance.turning.empty() ? instance.transforms.size() : instance.turning.size());
+    const auto keys = static_cast<std::uint32_t>(instance.turning.empty() ? instance.transforms.size()
+                                                                          : instance.turning.size());
     const Moment m(time_, keys);
     if (!instance.turning.empty()) return map_at(instance, {m.key, m.f});
     if (keys == 1) return instance.transforms[0];
@@ -536,12 +535,12 @@ class RandomScene {
       any_hit(scene, rays, contexts, occluded, isa);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!same_hit(hits[i], expected[i]))
-          return fail(tally_.differing,
-                      fmt::format("{}: time {}, t {} of geometry {}, primitive {}; expected t {} of {}, {}; "
-                                  "ray {}",
-                                  to_string(isa), contexts[i].time, hits[i].t, hits[i].geometry,
-                                  hits[i].primitive, expected[i].t, expected[i].geometry,
-                                  expected[i].primitive, exact_text(rays[i])));
+          return fail(
+              tally_.differing,
+              fmt::format("{}: time {}, t {} of geometry {}, primitive {}; expected t {} of {}, {}; "
+                          "ray {}",
+                          to_string(isa), contexts[i].time, hits[i].t, hits[i].geometry, hits[i].primitive,
+                          expected[i].t, expected[i].geometry, expected[i].primitive, exact_text(rays[i])));
         if (blocked[i] != 2 && occluded[i] != blocked[i])
           return fail(tally_.differing,
                       fmt::format("{}: time {}, any hit {}, expected {}; ray {}", to_string(isa),
