@@ -89,7 +89,8 @@ class UserShape {
 
 /// A mesh whose vertices move along straight lines between keys, which are equally far apart from time 0 to
 /// 1. At time s between two of them a vertex is at (1 - f) a + f b, computed in float, where f = s (keys - 1)
-/// less the number of the first; hits are the bits of a mesh with these positions.
+/// less the number of the first; hits are the bits of a mesh with these positions. Triangles that are not
+/// finite at some key are left out.
 struct MovingMesh {
   std::shared_ptr<const TriangleMesh> mesh;    ///< its positions are those of the first key
   std::vector<Column<Vec3f>> later_positions;  ///< of the other keys; at least one, as many as `mesh` has
@@ -114,8 +115,8 @@ class QuadFaces final : public FaceMap {
 
 class TraceScene;
 
-/// A map that turns: at a key it is p -> shift_after + R(quaternion) (scale_skew p + shift_before). Between
-/// keys the quaternion turns at constant speed the shorter way (Shoemake 1985), the rest is linear.
+/// A map that turns: at a key it is p -> outer + R(quaternion) inner(p). Between keys the quaternion turns at
+/// constant speed the shorter way (Shoemake 1985), the rest is linear.
 struct TurningMap {
   double quaternion[4] = {1, 0, 0, 0};  ///< real part first; of any length but zero
   Affine inner;                         ///< applied before the rotation
@@ -146,12 +147,16 @@ struct SceneGeometry {
   std::variant<Geometry, MovingMesh, std::shared_ptr<const UserShape>, SceneInstance, SceneInstances> shape;
   std::uint32_t number = kNoId;  ///< the caller's; not kNoId, and no two of a scene have the same
   std::uint32_t mask = ~0u;      ///< see RayContext::mask
-  /// The times of the first and the last key of what has keys. Nothing of it is seen at other times, nor at `end`
-  /// if that is below 1, when what follows may begin.
+  /// The times of the first and the last key of what has keys. Nothing of it is seen at other times, nor at
+  /// `end` if that is below 1, when what follows may begin.
   float begin = 0, end = 1;
-  /// Judge hits of closest_hit and any_hit; null: all count. They must outlive the scene.
+  /// Judge hits of closest_hit and any_hit; null: all count. They must outlive the scene. Those of instances
+  /// are never asked.
   const HitFilter* closest_filter = nullptr;
   const HitFilter* any_filter = nullptr;
+  /// Of a Geometry: a structure of it alone without its transform, built before, which is shown in place of
+  /// one that would be built; null: none. So what does not change need not be built again.
+  std::shared_ptr<const Accel> tree;
   std::shared_ptr<const FaceMap> faces;  ///< of meshes; null: a primitive is a triangle
   void* user = nullptr;                  ///< the program's own, found again in hits
 };
@@ -160,9 +165,9 @@ struct SceneGeometry {
 /// not move and is no code of the program stands in one Accel and is traced as such; the rest in trees of its
 /// own, whose boxes move along straight lines with it.
 ///
-/// Of hits at equal distance those outside of instances count first, then those of the geometry that was
-/// given first, then the lowest primitive. User shapes are asked with a ray that ends at the nearest hit so
-/// far.
+/// Of hits at equal distance those in no instance, combination or sphere that a transform distorts count
+/// first, then those of the geometry that was given first, then the lowest primitive. User shapes are asked
+/// with a ray that ends at the nearest hit so far.
 ///
 /// Throws Error if there are more than 2^32 - 2 primitives, numbers are doubled, keys do not fit, or
 /// instances are nested deeper than InstanceChain::kMost.

@@ -25,6 +25,7 @@
 #include "verify/checks/findings.h"
 #include "verify/checks/kernels.h"
 #include "verify/checks/meshes.h"
+#include "verify/checks/trace_scenes.h"
 
 namespace oktett {
 
@@ -187,6 +188,16 @@ class Report {
     changes_.add("differing", t.differing), changes_.add("altered", t.altered);
   }
 
+  void trace_scenes(const TraceScenesTally& t) {
+    row(t, "trace_scene",
+        fmt::format("{:<25}{:>10}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}", "random scenes", t.rays, t.hits,
+                    t.scenes, t.parts, t.judged, t.differing, t.misjudged));
+    trace_scenes_.add("rays", t.rays), trace_scenes_.add("hits", t.hits);
+    trace_scenes_.add("scenes", t.scenes), trace_scenes_.add("parts", t.parts);
+    trace_scenes_.add("judged", t.judged), trace_scenes_.add("differing", t.differing);
+    trace_scenes_.add("misjudged", t.misjudged);
+  }
+
   /// Prints the end of the report and returns the exit status.
   int finish(double seconds) const {
     if (json_) {
@@ -195,6 +206,7 @@ class Report {
       all.add("seconds", seconds), all.add("first_failure", failure_);
       all.add("kernels", kernels_), all.add("surfaces", surfaces_), all.add("meshes", meshes_);
       all.add("combinations", combinations_), all.add("changes", changes_);
+      all.add("trace_scene", trace_scenes_);
       fmt::print("{}\n", all.text());
     } else {
       fmt::print("\n{} rays in {:.1f} s: {}\n", rays_, seconds,
@@ -216,7 +228,7 @@ class Report {
   }
 
   bool json_;
-  JsonObject kernels_, surfaces_, meshes_, combinations_, changes_;
+  JsonObject kernels_, surfaces_, meshes_, combinations_, changes_, trace_scenes_;
   std::uint64_t rays_ = 0, failed_rows_ = 0;
   std::string failure_;
 };
@@ -285,10 +297,17 @@ void verify_changes(const VerifyArguments& arguments, std::uint64_t rays, Report
   report.changes(verify_changes(rays / 1000 + 1, chosen_isas(arguments.isa)));
 }
 
+/// For a thousandth of the rays there is a scene.
+void verify_trace_scenes(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  report.heading(fmt::format("\n{:<25}{:>10}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}", "trace_scene", "rays",
+                             "hits", "scenes", "parts", "judged", "differing", "misjudged"));
+  report.trace_scenes(verify_trace_scenes(rays / 1000 + 1, chosen_isas(arguments.isa)));
+}
+
 /// Throws Error if one of the requested surfaces does not exist.
 void check_surfaces(const std::vector<std::string>& asked) {
   std::vector<std::string> names = exact_oracle_names();
-  names.push_back("combinations"), names.push_back("changes");
+  names.push_back("combinations"), names.push_back("changes"), names.push_back("trace_scene");
   for (const std::string& name : asked) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw Error(
@@ -328,6 +347,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (!arguments.meshes_only && arguments.wants("combinations"))
     verify_combinations(arguments, rays / 10, report);
   if (!arguments.meshes_only && arguments.wants("changes")) verify_changes(arguments, rays, report);
+  if (!arguments.meshes_only && arguments.wants("trace_scene")) verify_trace_scenes(arguments, rays, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }
@@ -343,7 +363,7 @@ void add_verify_command(CommandLine& line) {
   verb.option("--mesh", &arguments->meshes, "FILE",
               "Check this mesh too, also beside --surface; may be repeated");
   verb.option("--surface", &arguments->surfaces, "NAME",
-              "Check this exact surface, `combinations` or `changes` only; may be repeated");
+              "Check this exact surface, `combinations`, `changes` or `trace_scene` only; may be repeated");
   verb.flag("--meshes-only", arguments->meshes_only,
             "Check meshes only: those given, else the generated ones");
   verb.choice("--isa", arguments->isa, "NAME", "One instruction set instead of all",

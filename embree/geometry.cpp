@@ -1,5 +1,7 @@
 #include "embree/geometry.h"
 
+#include <algorithm>
+#include <span>
 #include <string>
 
 #include "accel/time/instance_motion.h"
@@ -171,12 +173,32 @@ std::uint32_t Geometry::primitive_count() const {
   return count(RTC_BUFFER_TYPE_INDEX);
 }
 
-const Made& Geometry::made() {
+const Made& Geometry::made(bool with_tree) {
   // What a program's function or another scene tells may have changed unnoticed.
-  if (made_version_ == shape_version_ && !is_instance() && type != RTC_GEOMETRY_TYPE_USER) return made_;
-  made_ = make();
-  made_version_ = shape_version_;
+  if (made_version_ != shape_version_ || is_instance() || type == RTC_GEOMETRY_TYPE_USER) {
+    made_ = make();
+    made_version_ = shape_version_;
+  }
+  if (with_tree && made_.tree == nullptr && made_.mesh != nullptr && time_steps == 1) grow_tree();
   return made_;
+}
+
+void Geometry::grow_tree() {
+  const TriangleMesh& mesh = *made_.mesh;
+  const std::shared_ptr<const TriangleMesh> before = tree_ != nullptr ? tree_->mesh(tree_number_) : nullptr;
+  const auto same = [](const auto& a, const auto& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
+  };
+  if (before != nullptr && quality == RTC_BUILD_QUALITY_REFIT && same(before->indices, mesh.indices) &&
+      before->positions.size() == mesh.positions.size()) {
+    tree_->set_vertices(tree_number_, std::span(mesh.positions.data(), mesh.positions.size()));
+  } else {
+    tree_ = std::make_unique<DynamicAccel>(BuildOptions{BuildQuality::fast, true, ~0u});
+    oktett::Geometry geometry;
+    geometry.shape = MeshGeometry{made_.mesh.get(), false};
+    tree_number_ = tree_->add(made_.mesh, std::move(geometry));
+  }
+  made_.tree = tree_->accel();
 }
 
 Made Geometry::make() const {
@@ -196,7 +218,8 @@ Made Geometry::make() const {
     case RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT:
       return make_points(*this);
     default:
-      return is_refused() ? Made{oktett::Geometry{SpheresShape{}}, nullptr, nullptr} : make_instance(*this);
+      return is_refused() ? Made{oktett::Geometry{SpheresShape{}}, nullptr, nullptr, nullptr}
+                          : make_instance(*this);
   }
 }
 
@@ -255,17 +278,17 @@ RTC_API void rtcCommitGeometry(RTCGeometry geometry) {
                                               std::to_string(step) + " has " + std::to_string(view->count));
       vertices = view->count;
     }
+    g.change_at_once();
     g.is_committed = true;
-    g.change_setting();
   });
 }
 
 RTC_API void rtcEnableGeometry(RTCGeometry geometry) {
-  with(geometry, [](Geometry& g) { g.is_enabled = true, g.change_setting(); });
+  with(geometry, [](Geometry& g) { g.is_enabled = true, g.change_at_once(); });
 }
 
 RTC_API void rtcDisableGeometry(RTCGeometry geometry) {
-  with(geometry, [](Geometry& g) { g.is_enabled = false, g.change_setting(); });
+  with(geometry, [](Geometry& g) { g.is_enabled = false, g.change_at_once(); });
 }
 
 // ---- Settings.
@@ -319,11 +342,11 @@ RTC_API void* rtcGetGeometryUserData(RTCGeometry geometry) {
 }
 
 RTC_API void rtcSetGeometryIntersectFilterFunction(RTCGeometry geometry, RTCFilterFunctionN filter) {
-  with(geometry, [&](Geometry& g) { g.closest_filter = filter, g.change_setting(); });
+  with(geometry, [&](Geometry& g) { g.closest_filter = filter, g.change_at_once(); });
 }
 
 RTC_API void rtcSetGeometryOccludedFilterFunction(RTCGeometry geometry, RTCFilterFunctionN filter) {
-  with(geometry, [&](Geometry& g) { g.any_filter = filter, g.change_setting(); });
+  with(geometry, [&](Geometry& g) { g.any_filter = filter, g.change_at_once(); });
 }
 
 #if OKTETT_EMBREE == 4

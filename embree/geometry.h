@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/dynamic_accel.h"
 #include "accel/trace_scene.h"
 #include "embree/buffer.h"
 
@@ -24,14 +25,15 @@ struct Made {
   decltype(SceneGeometry::shape) shape;
   std::shared_ptr<const FaceMap> faces;
   std::shared_ptr<const TriangleMesh> mesh;  ///< that `shape` refers to
+  std::shared_ptr<const Accel> tree;         ///< of it alone, if it was asked for
 };
 
 class Geometry {
  public:
   Geometry(Ref<RTCDeviceTy> owner, RTCGeometryType type);
 
-  /// Whether this type does not exist here. Such a geometry takes all settings and has no surface, so that programs
-  /// that do not look at errors run on.
+  /// Whether this type does not exist here. Such a geometry takes all settings and has no surface, so that
+  /// programs that do not look at errors run on.
   bool is_refused() const;
 
   // ---- Buffers.
@@ -48,13 +50,16 @@ class Geometry {
   // ---- What a scene is made of.
 
   std::uint32_t primitive_count() const;
-  /// The shape; made anew if the geometry was committed since.
-  const Made& made();
+  /// The shape; made anew if the geometry has changed. `with_tree`: a mesh that does not move has a tree of
+  /// its own, which is kept, and refitted where only vertices have changed.
+  const Made& made(bool with_tree);
   /// Counts up where the geometry changes in a way that a scene sees.
   std::uint64_t version() const { return version_; }
-  /// Notes a change that counts from the next commit on.
-  void change_shape() { shape_version_ = ++version_; }
-  void change_setting() { ++version_; }
+  /// Notes a change, which counts when the geometry is committed.
+  void change_shape() { shape_version_ = ++version_, is_committed = false; }
+  void change_setting() { ++version_, is_committed = false; }
+  /// The same for what counts at once.
+  void change_at_once() { ++version_; }
 
   bool is_mesh() const {
     return type == RTC_GEOMETRY_TYPE_TRIANGLE || type == RTC_GEOMETRY_TYPE_QUAD ||
@@ -89,10 +94,13 @@ class Geometry {
 
  private:
   Made make() const;
+  void grow_tree();
 
   std::map<Slot, View> views_;
   std::uint64_t version_ = 1, shape_version_ = 1, made_version_ = 0;
   Made made_;
+  std::unique_ptr<DynamicAccel> tree_;  ///< of the mesh
+  std::uint32_t tree_number_ = 0;       ///< of the mesh in it
 };
 
 /// Makes the shape of a geometry's buffers. Primitives whose numbers are out of range, and those that are not

@@ -95,9 +95,9 @@ void Scene::commit() {
     if (!own.is_committed)
       fail(RTC_ERROR_INVALID_OPERATION, "geometry " + std::to_string(i) + " was not committed");
     traced->geometries.push_back(geometries[i]);
-    const Made& made = traced->made.emplace_back(own.made());
+    const Made& made = traced->made.emplace_back(own.made((flags & RTC_SCENE_FLAG_DYNAMIC) != 0));
     SceneGeometry& shape = shapes.emplace_back();
-    shape.shape = made.shape, shape.faces = made.faces;
+    shape.shape = made.shape, shape.faces = made.faces, shape.tree = made.tree;
     shape.number = static_cast<std::uint32_t>(i), shape.mask = own.mask, shape.user = &own;
     shape.begin = own.begin, shape.end = own.end;
     if (own.type != RTC_GEOMETRY_TYPE_USER && !own.is_instance()) {

@@ -57,6 +57,9 @@ void check(const SceneGeometry& g, const MovingMesh& shape) {
 }
 
 void check(const SceneGeometry& g, const Geometry& shape) {
+  if (g.tree != nullptr && g.tree->geometries.size() != 1)
+    refuse(g, "a structure of one geometry was expected, that of " +
+                  std::to_string(g.tree->geometries.size()) + " was given");
   if (std::holds_alternative<InstanceGeometry>(shape.shape) ||
       std::holds_alternative<InstanceList>(shape.shape))
     refuse(g, "an instance in a scene is a SceneInstance or SceneInstances");
@@ -133,7 +136,11 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   for (std::uint32_t g = 0; g < scene.geometries.size(); ++g) {
     const SceneGeometry& own = scene.geometries[g];
     if (!is_fixed(own)) continue;
-    if (const auto* const shape = std::get_if<Geometry>(&own.shape)) add(g, 0, *shape);
+    if (const auto* const shape = std::get_if<Geometry>(&own.shape)) {
+      Geometry geometry = *shape;
+      if (own.tree != nullptr) geometry.shape = InstanceGeometry{own.tree};
+      add(g, 0, std::move(geometry));
+    }
     if (const auto* const one = std::get_if<SceneInstance>(&own.shape))
       add(g, 0, instance(*one->child, map_at(*one, {})));
     if (const auto* const many = std::get_if<SceneInstances>(&own.shape))
@@ -186,9 +193,8 @@ class MovingSource final : public TimeSource {
 
 void build_moving(TraceScene& scene, const BuildOptions& options) {
   std::map<std::tuple<std::uint32_t, float, float>, ItemTable> by_keys;
-  for (std::uint32_t g = 0; g < scene.geometries.size(); ++g) {
+  const auto add = [&](std::uint32_t g) {
     const SceneGeometry& own = scene.geometries[g];
-    if (is_fixed(own)) continue;
     each_child(own, [&](const TraceScene& child) {
       if (!child.fixed->unbounded.empty())
         refuse(own,
@@ -201,7 +207,11 @@ void build_moving(TraceScene& scene, const BuildOptions& options) {
     const std::uint64_t end = items.count() + item_count(own);
     if (end >= kNoId) throw Error("more than 2^32 - 2 primitives in one scene");
     items.geometry.push_back(g), items.first.push_back(static_cast<std::uint32_t>(end));
-  }
+  };
+  // At equal distance the lowest item counts, and instances come last.
+  for (const bool instances : {false, true})
+    for (std::uint32_t g = 0; g < scene.geometries.size(); ++g)
+      if (!is_fixed(scene.geometries[g]) && is_instance(scene.geometries[g]) == instances) add(g);
   for (auto& [range, items] : by_keys) {
     MovingPart& part = scene.moving.emplace_back();
     part.items = std::move(items);

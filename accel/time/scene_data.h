@@ -10,6 +10,11 @@
 
 namespace oktett {
 
+/// Whether it shows other scenes.
+inline bool is_instance(const SceneGeometry& g) {
+  return std::holds_alternative<SceneInstance>(g.shape) || std::holds_alternative<SceneInstances>(g.shape);
+}
+
 /// The items of a tree: the primitives of some geometries of the scene, one after the other.
 struct ItemTable {
   std::vector<std::uint32_t> geometry;  ///< places in TraceScene::geometries

@@ -26,7 +26,7 @@ struct KeyTime {
   float f = 0;
 
   /// Of `keys` keys that are equally far apart from time 0 to 1.
-  static KeyTime of(float time, std::uint32_t keys) {
+  OKTETT_INLINE static KeyTime of(float time, std::uint32_t keys) {
     if (keys < 2 || !(time > 0)) return {};
     const float at = (time < 1 ? time : 1.0f) * static_cast<float>(keys - 1);
     const std::uint32_t key =
@@ -36,7 +36,7 @@ struct KeyTime {
   /// A number between its values at both keys, as everything that moves is interpolated. Rounding is
   /// monotone, so what is at most b at both keys is at most the interpolated b in between: boxes hold what
   /// they held at the keys.
-  float between(float a, float b) const { return (1 - f) * a + f * b; }
+  OKTETT_INLINE float between(float a, float b) const { return (1 - f) * a + f * b; }
 };
 
 /// The tree. Its items are numbered by the caller.
@@ -75,11 +75,9 @@ struct TimeCalls {
   void* self;
   /// A triangle is hit at hit.t by the ray, as its nearest hit so far: whether that counts. Null: all count.
   bool (*accept)(void* self, const Hit& hit);
-  /// Tests an item that is no triangle with the ray, which ends at its nearest hit so far. Returns true and
-  /// sets t, u and v if there is one that counts.
+  /// Tests an item that is no triangle with the ray, which ends at its nearest hit so far, `hit`, if that is
+  /// valid. Returns true and sets t, u and v if there is one that counts instead.
   bool (*test)(void* self, std::uint32_t item, const Ray& ray, Hit& hit);
-  /// The ray ends here.
-  const bool* ended;
 };
 
 /// The nearest hit of a ray whose range ends at its nearest hit so far; Hit::item is the item of the tree.

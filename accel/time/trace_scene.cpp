@@ -25,16 +25,18 @@ void QuadFaces::to_face(std::uint32_t& primitive, float& u, float& v) const {
 
 namespace {
 
-/// A hit with the place in the scene of its outermost geometry, which decides among equal distances.
+/// A hit with what decides among equal distances.
 struct PlacedHit {
   SceneHit hit;
-  std::uint32_t place = kNoId;
+  std::uint32_t place = kNoId;  ///< of the outermost geometry in the scene; kNoId: there is no hit
+  bool is_inside = false;       ///< of an instance or of what stands in a structure of its own
 };
 
-/// Whether `a` counts rather than `b` at the same distance: own geometries first, as in an Accel.
+/// Whether `a` counts rather than `b`, in the order of an Accel.
 bool is_before(const PlacedHit& a, const PlacedHit& b) {
-  const bool inner = a.hit.chain.count > 0, other = b.hit.chain.count > 0;
-  return inner != other ? other : a.place < b.place;
+  if (b.place == kNoId) return true;
+  if (a.hit.t != b.hit.t) return a.hit.t < b.hit.t;
+  return a.is_inside != b.is_inside ? b.is_inside : a.place < b.place;
 }
 
 void name_face(SceneHit& hit, const SceneGeometry& geometry, std::uint32_t primitive) {
@@ -49,17 +51,25 @@ struct NamedHit {
   PlacedHit placed;  ///< all but the normal
   const TraceScene* scene;
   const SceneGeometry* geometry;
-  Ray ray;              ///< in the innermost scene, as its own structure traced it
-  Hit own;              ///< in the fixed structure of the innermost scene
-  bool is_seen = true;  ///< by the masks of the geometry and of all instances
+  Ray ray;                  ///< in the innermost scene, as its own structure traced it
+  Hit own;                  ///< in the fixed structure of the innermost scene
+  std::uint32_t primitive;  ///< in the geometry, before faces are named
+  bool is_seen = true;      ///< by the masks of the geometry and of all instances
 
   /// Sets the normal.
   void complete() {
-    const std::uint32_t g = scene->fixed->geometry_of(own.item);
-    if (own.instance == kNoId && !scene->normals[g].empty())
-      placed.hit.normal = scene->normals[g][own.item - scene->fixed->first_item[g]];
-    else
+    const auto& shape = std::get<Geometry>(geometry->shape);
+    if (const auto* const mesh = std::get_if<MeshGeometry>(&shape.shape)) {
+      const TriangleMesh& own_mesh = *mesh->mesh;
+      const auto corner = [&](std::size_t k) {
+        return own_mesh.positions[own_mesh.indices[3 * std::size_t{primitive} + k]];
+      };
+      std::array<Vec3f, 3> corners{corner(0), corner(1), corner(2)};
+      if (!shape.transform.is_identity()) corners = *triangle_corners(*scene->fixed, own);
+      placed.hit.normal = triangle_normal(corners[0], corners[1], corners[2]);
+    } else {
       placed.hit.normal = surface_interaction(*scene->fixed, ray, own).geometric_normal;
+    }
   }
 };
 
@@ -68,28 +78,30 @@ NamedHit name_hit(const TraceScene& scene, const Ray& ray, std::uint32_t mask, c
   NamedHit n;
   n.scene = &scene, n.ray = ray, n.own = hit;
   n.placed.hit.chain = chain;
-  std::uint32_t geometry, primitive;
+  n.placed.is_inside = hit.instance != kNoId;
   for (;;) {
     const Accel& accel = *n.scene->fixed;
-    geometry = n.own.instance == kNoId ? accel.geometry_of(n.own.item)
-                                       : outermost_link(accel, n.own.instance).geometry;
+    std::optional<ChainLink> link;
+    if (n.own.instance != kNoId) link = outermost_link(accel, n.own.instance);
+    const std::uint32_t geometry = link ? link->geometry : accel.geometry_of(n.own.item);
     const ItemTable::Place place = n.scene->fixed_place[geometry];
     if (n.placed.place == kNoId) n.placed.place = place.geometry;
     n.geometry = &n.scene->geometries[place.geometry];
     n.is_seen &= (n.geometry->mask & mask) != 0;
-    // A chain may also lead into a combination, or to a shape that its transform distorts.
+    // A chain may also lead into a combination, or to the only geometry of a structure: SceneGeometry::tree,
+    // or spheres that their transform distorts.
     if (std::holds_alternative<Geometry>(n.geometry->shape)) {
-      primitive = n.own.instance == kNoId ? n.own.item - accel.first_item[geometry] : 0;
+      n.primitive = !link ? n.own.item - accel.first_item[geometry] : link->is_combination ? 0 : n.own.item;
       break;
     }
     n.placed.hit.chain.push(n.geometry->number, place.primitive);
     n.ray = moved_ray(accel.frames[geometry].inverse, n.ray);
-    n.own.instance = outermost_link(accel, n.own.instance).rest;
+    n.own.instance = link->rest;
     n.scene = &n.scene->child(place.geometry, place.primitive);
   }
   SceneHit& out = n.placed.hit;
   out.t = hit.t, out.u = hit.u, out.v = hit.v;
-  name_face(out, *n.geometry, primitive);
+  name_face(out, *n.geometry, n.primitive);
   return n;
 }
 
@@ -110,8 +122,8 @@ class SceneTracer {
     judges_ = scene.has_masks || filters_;
   }
 
-  /// What the ray hits, with a place if anything; for Query::any no more than that it does. A ray that a
-  /// filter has ended has a place without a geometry.
+  /// What the ray hits, with a place if anything; for Query::any no more than that it does. Where a filter
+  /// ends the ray, there is a place without a geometry.
   PlacedHit run(const Ray& ray) {
     if (context_.mask == 0) return {};
     ray_ = ray;
@@ -122,7 +134,6 @@ class SceneTracer {
     }
     return best_;
   }
-  bool ended() const { return ended_; }
 
  private:
   // ---- Filters.
@@ -144,9 +155,7 @@ class SceneTracer {
           continue;
         }
       }
-      if (accepted >= hits.size()) return nullptr;
-      if (Q == Query::any && !hits[accepted].valid()) ended_ = true;
-      return &hits[accepted];
+      return accepted < hits.size() ? &hits[accepted] : nullptr;
     }
     return nullptr;
   }
@@ -155,7 +164,9 @@ class SceneTracer {
 
   void fixed() {
     if (Q == Query::any && !judges_) {
-      if (any_hit(*scene_.fixed, ray_, isa_)) best_.hit.geometry = best_.place = 0;
+      if (!any_hit(*scene_.fixed, ray_, isa_)) return;
+      best_.hit.geometry = best_.place = 0;
+      best_.hit.t = ray_.tmax;
       return;
     }
     const Hit first = closest_hit(*scene_.fixed, ray_, isa_);
@@ -199,7 +210,7 @@ class SceneTracer {
     }
     const SceneHit* const accepted = judge(*first.geometry, first.ray, hits);
     if (accepted == nullptr) return false;
-    best_ = {*accepted, first.placed.place};
+    best_ = {*accepted, first.placed.place, first.placed.is_inside};
     return true;
   }
 
@@ -210,7 +221,7 @@ class SceneTracer {
     part_ = &part;
     own_time_ = part.own_time(context_.time);
     tested_item_ = kNoId;
-    const TimeCalls calls{this, judges_ ? accept : nullptr, test, &ended_};
+    const TimeCalls calls{this, judges_ ? accept : nullptr, test};
     Ray ray = ray_;
     ray.tmax = std::min(ray.tmax, best_.hit.t);
     const TimeCode& code = time_code(isa_);
@@ -218,10 +229,9 @@ class SceneTracer {
         (Q == Query::closest ? code.closest_hit : code.any_hit)(*part.tree, ray, own_time_, calls);
     if (!hit.valid()) return;
     const ItemTable::Place place = part.items[hit.item];
-    PlacedHit found;
-    found.place = place.geometry;
-    found.hit = hit.item == tested_item_ ? tested_ : name_triangle(place, hit);
-    if (found.hit.t < best_.hit.t || is_before(found, best_)) best_ = found;
+    const PlacedHit found{hit.item == tested_item_ ? tested_ : name_triangle(place, hit), place.geometry,
+                          is_instance(scene_.geometries[place.geometry])};
+    if (is_before(found, best_)) best_ = found;
   }
 
   /// A hit of a triangle that moves.
@@ -303,7 +313,6 @@ class SceneTracer {
     chain.push(geometry.number, place.primitive);
     SceneTracer child(scene_.child(place.geometry, place.primitive), context_, chain, isa_);
     const PlacedHit inner = child.run(moved_ray(to_child, ray));
-    ended_ |= child.ended();
     found = inner.hit;
     return inner.place != kNoId;
   }
@@ -314,7 +323,6 @@ class SceneTracer {
   const Isa isa_;
   Ray ray_;
   bool filters_, judges_;
-  bool ended_ = false;  ///< a filter has ended a query for any hit
   PlacedHit best_;
   const MovingPart* part_ = nullptr;
   float own_time_ = 0;  ///< in it

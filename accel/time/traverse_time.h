@@ -30,7 +30,7 @@ class TimeTraversal {
         }
       } else {
         leaf(tree_.leaves[ref.table_index()], ray);
-        if (*calls_.ended || (Q == Query::any && r_.item[0] != kNoId)) break;
+        if (Q == Query::any && r_.item[0] != kNoId) break;
       }
       const float limit = r_.tmax[0] * kSlabRelativeSlack + r_.slack[0];
       do {
@@ -83,7 +83,7 @@ class TimeTraversal {
     Ray to_nearest = ray;
     to_nearest.tmax = r_.tmax[0];
     const std::uint32_t item = tree_.called_items[leaf.begin];
-    Hit hit;
+    Hit hit = r_.hit(0);
     if (calls_.test(calls_.self, item, to_nearest, hit)) accept_hit(r_, 0, hit.t, hit.u, hit.v, item, kNoId);
   }
 
@@ -110,8 +110,8 @@ class TimeTraversal {
     each_hit(lanes, hits, [&](int k, float t, float u, float v) {
       const std::uint32_t item = items[k];
       if (calls_.accept != nullptr) {
-        if (*calls_.ended || t > r_.tmax[0] ||
-            (t == r_.tmax[0] && r_.item[0] != kNoId && item > r_.item[0]) ||
+        const bool found = r_.item[0] != kNoId;
+        if ((Q == Query::any && found) || t > r_.tmax[0] || (t == r_.tmax[0] && found && item > r_.item[0]) ||
             !calls_.accept(calls_.self, {t, u, v, item, kNoId}))
           return;
       }

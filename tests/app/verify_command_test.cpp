@@ -28,6 +28,9 @@ TEST(VerifyCommand, ChecksWhatItIsAskedFor) {
   const CommandResult changes = run_command(dir, {"verify", "--surface", "changes", "--rays", "20000"});
   EXPECT_EQ(changes.status, 0) << changes.out << changes.err;
   EXPECT_TRUE(contains(changes.out, "\nrandom sequences ")) << changes.out;
+  const CommandResult scenes = run_command(dir, {"verify", "--surface", "trace_scene", "--rays", "20000"});
+  EXPECT_EQ(scenes.status, 0) << scenes.out << scenes.err;
+  EXPECT_TRUE(contains(scenes.out, "\nrandom scenes ")) << scenes.out;
 }
 
 TEST(VerifyCommand, MeshesBesideSurfacesAndAlone) {
