@@ -20,6 +20,8 @@ Kind kind_of(const Geometry& g) {
 }
 
 Box instance_bounds(const Affine& to_world, const Accel& child) {
+  // Then rays stay the same to the last bit.
+  if (to_world.is_identity()) return child.bounds;
   Box b = transform_bounds(to_world, child.bounds);
   if (b.empty()) return b;
   const Vec3f e = b.extent();

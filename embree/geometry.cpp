@@ -218,9 +218,14 @@ Made Geometry::make() const {
     case RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT:
       return make_points(*this);
     default:
-      return is_refused() ? Made{oktett::Geometry{SpheresShape{}}, nullptr, nullptr, nullptr}
-                          : make_instance(*this);
+      break;
   }
+  if (!is_refused()) return make_instance(*this);
+  oktett::Geometry nothing;
+  nothing.shape = SpheresShape{};
+  Made made;
+  made.shape = std::move(nothing);
+  return made;
 }
 
 }  // namespace oktett::embree
