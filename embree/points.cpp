@@ -26,6 +26,8 @@ class PointQuery final : public NearVisitor {
 
   void visit(const SceneGeometry& scene_geometry, std::uint32_t primitive) override {
     const auto& geometry = *static_cast<const Geometry*>(scene_geometry.user);
+    // As Embree's documentation has it, points and curves are left out.
+    if (!geometry.is_mesh() && geometry.type != RTC_GEOMETRY_TYPE_USER) return;
     RTCPointQueryFunctionArguments arguments;
     arguments.query = &query_;
     arguments.userPtr = user_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "accel/accel_data.h"
 #include "accel/time/instance_motion.h"
@@ -50,17 +52,7 @@ class NearWalk {
       : scene_(scene), near_(near), time_(time), visitor_(visitor) {}
 
   void run() {
-    const Accel& fixed = *scene_.fixed;
-    for (const LeafEntry& leaf : fixed.unbounded) visit(fixed, leaf);
-    walk(
-        fixed.root, [&](NodeRef ref, int i) { return box_of(fixed.nodes[ref.node_index()], i); },
-        [&](NodeRef ref) { return fixed.nodes[ref.node_index()].child; },
-        [&](NodeRef ref) {
-          if (ref.is_triangles())
-            visit(fixed, fixed.blocks[ref.block()], ref.triangle_count());
-          else
-            visit(fixed, fixed.leaves[ref.table_index()]);
-        });
+    structure(*scene_.fixed, nullptr);
     for (const MovingPart& part : scene_.moving) moving(part);
   }
 
@@ -101,6 +93,21 @@ class NearWalk {
 
   // ---- What does not move.
 
+  /// All of a structure: the fixed one of the scene, or that of the only geometry `own`.
+  void structure(const Accel& accel, const SceneGeometry* own) {
+    own_ = own;
+    for (const LeafEntry& leaf : accel.unbounded) visit(accel, leaf);
+    walk(
+        accel.root, [&](NodeRef ref, int i) { return box_of(accel.nodes[ref.node_index()], i); },
+        [&](NodeRef ref) { return accel.nodes[ref.node_index()].child; },
+        [&](NodeRef ref) {
+          if (ref.is_triangles())
+            visit(accel, accel.blocks[ref.block()], ref.triangle_count());
+          else
+            visit(accel, accel.leaves[ref.table_index()]);
+        });
+  }
+
   void visit(const Accel& accel, const TriangleBlock& block, int count) {
     for (int lane = 0; lane < count; ++lane) {
       Box box;
@@ -124,16 +131,25 @@ class NearWalk {
   }
 
   void visit(const Accel& accel, std::uint32_t item) {
+    if (own_ != nullptr) return tell(*own_, item);
     const std::uint32_t g = accel.geometry_of(item);
     const ItemTable::Place place = scene_.fixed_place[g];
     const SceneGeometry& geometry = scene_.geometries[place.geometry];
-    if (std::holds_alternative<Geometry>(geometry.shape)) return tell(geometry, item - accel.first_item[g]);
-    enter(geometry, place.geometry, place.primitive, accel.geometries[g].transform);
+    const Affine& to_scene = accel.geometries[g].transform;
+    if (!std::holds_alternative<Geometry>(geometry.shape))
+      return enter(geometry, place.geometry, place.primitive, to_scene);
+    if (geometry.tree == nullptr) return tell(geometry, item - accel.first_item[g]);
+    const Affine to_tree = to_scene.inverse();
+    if (to_scene.is_invertible(to_tree))
+      NearWalk(scene_, near_.in(to_tree), time_, visitor_).structure(*geometry.tree, &geometry);
   }
 
   void tell(const SceneGeometry& geometry, std::uint32_t primitive) {
-    float u = 0, v = 0;
-    if (geometry.faces != nullptr) geometry.faces->to_face(primitive, u, v);
+    if (geometry.faces != nullptr) {
+      float u = 0, v = 0;
+      geometry.faces->to_face(primitive, u, v);
+      if (!told_.emplace(geometry.number, primitive).second) return;
+    }
     visitor_.visit(geometry, primitive);
   }
 
@@ -205,6 +221,8 @@ class NearWalk {
   const Near near_;
   const float time_;
   NearVisitor& visitor_;
+  const SceneGeometry* own_ = nullptr;  ///< whose structure is walked; null: that of the scene
+  std::set<std::pair<std::uint32_t, std::uint32_t>> told_;  ///< faces, by the numbers of their geometries
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ class NearVisitor {
   virtual ~NearVisitor() = default;
   /// How far from the point primitives count; it may shrink meanwhile.
   virtual float radius() const = 0;
-  /// A primitive whose bounds may be that near. Some may be told twice.
+  /// A primitive whose bounds may be that near. Those of exact surfaces may be told twice.
   virtual void visit(const SceneGeometry& geometry, std::uint32_t primitive) = 0;
   /// What follows until leave() is in the scene that instance `index` of a geometry shows. Returns whether it
   /// is of interest; if not, leave() is not called.

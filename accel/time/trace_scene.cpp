@@ -177,14 +177,35 @@ class SceneTracer {
       best_ = named.placed;
       return;
     }
-    if (decide({&named, 1})) return;
-    // Few rays come here; all that is left is found at once.
+    if (decide(named)) return;
+    // Most rays are rejected a few times at most: they go on behind each hit. Of the others all hits are
+    // found at once.
+    Ray rest = ray_;
+    Hit last = first;
     std::vector<Hit> hits;
-    all_hits(*scene_.fixed, ray_, hits, isa_);
-    std::vector<NamedHit> group;
+    for (int tries = 0; tries < kFewRejected; ++tries) {
+      rest.tmin = std::nextafter(last.t, 0.0f), rest.tmax = last.t;
+      all_hits(*scene_.fixed, rest, hits, isa_);
+      if (decide_behind(last, hits)) return;
+      rest.tmin = last.t, rest.tmax = ray_.tmax;
+      last = closest_hit(*scene_.fixed, rest, isa_);
+      if (!last.valid()) return;
+      named = name_hit(scene_, ray_, context_.mask, chain_, last);
+      if (decide(named)) return;
+    }
+    rest.tmin = std::nextafter(last.t, 0.0f);
+    all_hits(*scene_.fixed, rest, hits, isa_);
+    decide_behind(last, hits);
+  }
+
+  static constexpr int kFewRejected = 3;
+
+  /// Keeps the first hit behind `last` that counts, of a list in order. Returns whether there is one.
+  bool decide_behind(const Hit& last, const std::vector<Hit>& hits) {
     const auto is_rest = [&](const Hit& hit) {
-      return hit.t > first.t || (hit.t == first.t && !(hit == first));
+      return hit.t > last.t || (hit.t == last.t && !(hit == last));
     };
+    std::vector<NamedHit> group;
     for (auto next = std::find_if(hits.begin(), hits.end(), is_rest); next != hits.end();) {
       group.clear();
       for (; next != hits.end(); ++next) {
@@ -194,23 +215,33 @@ class SceneTracer {
           break;
         group.push_back(more);
       }
-      if (decide(group)) return;
+      if (decide(group)) return true;
     }
+    return false;
   }
 
-  /// Keeps the first of these hits, all with one geometry in one chain, that counts. Returns whether there is
-  /// one.
+  /// Whether a hit counts, which is kept then.
+  bool decide(NamedHit& named) {
+    if (!named.is_seen) return false;
+    if (Q == Query::closest || filters_) named.complete();
+    const SceneHit* const accepted = judge(*named.geometry, named.ray, {&named.placed.hit, 1});
+    if (accepted == nullptr) return false;
+    best_ = named.placed;
+    return true;
+  }
+
+  /// The same for several hits, all with one geometry in one chain, of which the first that counts is kept.
   bool decide(std::span<NamedHit> group) {
-    NamedHit& first = group[0];
-    if (!first.is_seen) return false;
+    if (!group[0].is_seen) return false;
     std::vector<SceneHit> hits;
     for (NamedHit& named : group) {
       if (Q == Query::closest || filters_) named.complete();
       hits.push_back(named.placed.hit);
     }
-    const SceneHit* const accepted = judge(*first.geometry, first.ray, hits);
+    const SceneHit* const accepted = judge(*group[0].geometry, group[0].ray, hits);
     if (accepted == nullptr) return false;
-    best_ = {*accepted, first.placed.place, first.placed.is_inside};
+    best_ = group[0].placed;
+    best_.hit = *accepted;
     return true;
   }
 
