@@ -131,7 +131,7 @@ class MovingSpheres final : public UserShape {
 // ---- One geometry alone.
 
 /// A geometry where one chain of instances shows it, at a moment.
-struct Part {
+struct ScenePart {
   const SceneGeometry* geometry;
   std::vector<const SceneGeometry*> instances;
   InstanceChain chain;
@@ -147,20 +147,20 @@ struct Part {
 struct Candidate {
   SceneHit hit;
   std::vector<std::uint32_t> order;
-  const Part* part;
+  const ScenePart* part;
 };
 
 class Parts {
  public:
-  Parts(const TraceScene& scene, float time) : time_(time) { list(scene, Part{}); }
-  std::vector<Part> parts;
+  Parts(const TraceScene& scene, float time) : time_(time) { list(scene, ScenePart{}); }
+  std::vector<ScenePart> parts;
 
  private:
-  void list(const TraceScene& scene, const Part& outer) {
+  void list(const TraceScene& scene, const ScenePart& outer) {
     for (std::uint32_t g = 0; g < scene.geometries.size(); ++g) {
       const SceneGeometry& own = scene.geometries[g];
       const auto enter = [&](std::uint32_t index, const TraceScene& child, const Affine& map) {
-        Part inner = outer;
+        ScenePart inner = outer;
         inner.instances.push_back(&own), inner.chain.push(own.number, index), inner.maps.push_back(map);
         inner.order.insert(inner.order.end(), {1, g, index});
         list(child, inner);
@@ -171,7 +171,7 @@ class Parts {
         for (std::uint32_t k = 0; k < many->places.size(); ++k)
           enter(k, *many->children[many->places[k].child], many->places[k].transform);
       } else {
-        Part part = outer;
+        ScenePart part = outer;
         part.geometry = &own;
         build(part);
         const auto* const fixed = std::get_if<Geometry>(&own.shape);
@@ -201,7 +201,7 @@ class Parts {
            (std::holds_alternative<SpheresShape>(g.shape) && g.transform.uniform_scale() == 0);
   }
 
-  void build(Part& part) const {
+  void build(ScenePart& part) const {
     const auto& shape = part.geometry->shape;
     if (const auto* const fixed = std::get_if<Geometry>(&shape)) part.accel = build_accel({*fixed});
     const auto* const moving = std::get_if<MovingMesh>(&shape);
@@ -228,7 +228,7 @@ Vec3f normal_of(const TriangleMesh& mesh, const Affine& transform, std::uint32_t
 }
 
 /// All that a ray meets of a part.
-void meet(const Part& part, Ray ray, const RayContext& context, std::vector<Candidate>& all) {
+void meet(const ScenePart& part, Ray ray, const RayContext& context, std::vector<Candidate>& all) {
   for (const Affine& map : part.maps) {
     const Affine inverse = map.inverse();
     if (!map.is_invertible(inverse)) return;
@@ -435,9 +435,9 @@ class RandomScene {
     return chance(0.4) ? static_cast<float>(random_.unit()) : known[pick(0, 6)];
   }
 
-  Ray draw_ray(const std::vector<Part>& parts) {
+  Ray draw_ray(const std::vector<ScenePart>& parts) {
     Vec3d target = random_.vector() * 2.0;
-    const Part& part = parts[random_.bits() % parts.size()];
+    const ScenePart& part = parts[random_.bits() % parts.size()];
     if (chance(0.6)) {
       target = random_.vector();
       if (part.mesh != nullptr && chance(0.5))
@@ -448,7 +448,7 @@ class RandomScene {
     return {Vec3f(from), chance(0.2) ? 0.3f : 0, Vec3f(target - from), chance(0.3) ? 1.1f : kInf};
   }
 
-  static bool is_seen(const Part& part, std::uint32_t mask) {
+  static bool is_seen(const ScenePart& part, std::uint32_t mask) {
     return (part.geometry->mask & mask) != 0 &&
            std::ranges::all_of(part.instances, [&](const auto* g) { return (g->mask & mask) != 0; });
   }
@@ -475,7 +475,7 @@ class RandomScene {
       if (chance(0.4)) context.mask = static_cast<std::uint32_t>(random_.bits() & 7);
       if (chance(0.3)) context.filter = &kFilters[pick(0, 5)];
       std::vector<Candidate> met;
-      for (const Part& part : all.parts)
+      for (const ScenePart& part : all.parts)
         if (is_seen(part, context.mask)) meet(part, rays.back(), context, met);
       std::ranges::stable_sort(met, [](const Candidate& a, const Candidate& b) {
         return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.order < b.order;
