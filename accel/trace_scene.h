@@ -74,7 +74,8 @@ class UserShape {
   /// At how many times, equally far apart, the bounds are told; between them they are interpolated linearly.
   /// RayContext::time is 0 at the first and 1 at the last.
   virtual std::uint32_t key_count() const { return 1; }
-  /// The bounds of a primitive at a key. One whose bounds are empty or not finite at any key is left out.
+  /// The bounds of a primitive at a key. One whose bounds are empty or not finite at any key is left out. The
+  /// others may also be asked about rays that miss them.
   virtual Box bounds(std::uint32_t primitive, std::uint32_t key) const = 0;
   /// Looks for the nearest hit with ray.tmin < t <= ray.tmax: sets t, u, v and the normal of `hit`, whose
   /// other members are set already and may be changed, and returns true; else false.

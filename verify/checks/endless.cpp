@@ -30,6 +30,7 @@ class Endless {
                       {"surfaces", "exact surfaces", 0, exact_oracle_names().size()},
                       {"combinations", "trees of any shape", 0, 1},
                       {"changes", "sequences of any kind", 0, 1},
+                      {"trace_scene", "scenes with time", 0, 1},
                       {"meshes", "meshes x placements", 0, meshes_.size() * mesh_placements().size()},
                       {"roots", "degrees", 0, kKnownRootsDegree}};
     for (std::size_t k = 0; k < coverage_.rows.size(); ++k)
@@ -40,8 +41,8 @@ class Endless {
     while (in_time()) {
       const std::uint64_t size = std::uint64_t{1} << std::min(coverage_.rounds, kLargestRound);
       const bool complete = kernels(2048 * size) && scenes(8 * size) && surfaces(512 * size) &&
-                            combinations(4 * size) && changes(4 * size) && meshes(512 * size) &&
-                            roots(512 * size);
+                            combinations(4 * size) && changes(4 * size) && trace_scenes(16 * size) &&
+                            meshes(512 * size) && roots(512 * size);
       coverage_.rounds += complete;
     }
     coverage_.seconds = seconds();
@@ -55,6 +56,7 @@ class Endless {
     kSurfaceRow,
     kCombinationRow,
     kChangesRow,
+    kTraceSceneRow,
     kMeshRow,
     kRootsRow
   };
@@ -117,6 +119,14 @@ class Endless {
     const ChangesTally t = verify_changes(sequences, options_.isas, take(kChangesRow, sequences));
     count(kChangesRow, {"sequences"}, sequences, t.rays);
     if (!t.failure.empty()) found(kChangesRow, "", [&] { return finding_of(t); });
+    return true;
+  }
+
+  bool trace_scenes(std::uint64_t scenes) {
+    if (!in_time()) return false;
+    const TraceScenesTally t = verify_trace_scenes(scenes, options_.isas, take(kTraceSceneRow, scenes));
+    count(kTraceSceneRow, {"scenes"}, scenes, t.rays);
+    if (!t.failure.empty()) found(kTraceSceneRow, "", [&] { return finding_of(t); });
     return true;
   }
 

@@ -45,9 +45,9 @@ struct EndlessReport {
 };
 
 /// Checks rounds of cases until the time is over: single kernels, random scenes, exact surfaces,
-/// combinations, changes, closed meshes and root finders. The first round is small and holds something of
-/// everything. Which cases come is a function of the seed; how many, of the time. Throws Error if a finding
-/// cannot be saved.
+/// combinations, changes, scenes with time, closed meshes and root finders. The first round is small and
+/// holds something of everything. Which cases come is a function of the seed; how many, of the time. Throws
+/// Error if a finding cannot be saved.
 Coverage verify_endless(const EndlessOptions& options, const EndlessReport& report);
 
 }  // namespace oktett

@@ -207,6 +207,8 @@ std::string repeated(const std::string& repeat, const std::vector<Isa>& isas) {
     return verify_csg(kOneTrial, isas, first).failure;
   } else if (check == "changes" && words >> first) {
     return verify_changes(1, isas, first).failure;
+  } else if (check == "trace_scene" && words >> first) {
+    return verify_trace_scenes(1, isas, first).failure;
   } else if (check == "scene" && words >> first) {
     return verify_scenes(1, isas, first).failure;
   } else if (check == "roots" && words >> degree >> first && degree >= 1 && degree <= kKnownRootsDegree) {
@@ -246,6 +248,10 @@ Finding finding_of(const CsgTally& tally) {
 
 Finding finding_of(const ChangesTally& tally) {
   return with_ray(tally.failure, fmt::format("changes {}", tally.sequence));
+}
+
+Finding finding_of(const TraceScenesTally& tally) {
+  return with_ray(tally.failure, fmt::format("trace_scene {}", tally.scene));
 }
 
 Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t first, std::uint64_t count,

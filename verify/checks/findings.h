@@ -13,6 +13,7 @@
 #include "verify/checks/kernels.h"
 #include "verify/checks/meshes.h"
 #include "verify/checks/scenes.h"
+#include "verify/checks/trace_scenes.h"
 
 namespace oktett {
 
@@ -28,6 +29,7 @@ Finding finding_of(KernelId id, CaseClass c, const KernelTally& tally);
 Finding finding_of(std::size_t form, const ExactTally& tally);
 Finding finding_of(const CsgTally& tally);
 Finding finding_of(const ChangesTally& tally);
+Finding finding_of(const TraceScenesTally& tally);
 /// `placement` is an index into mesh_placements(); `count` rays from number `first` on were checked.
 Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t first, std::uint64_t count,
                    const MeshTally& tally);
