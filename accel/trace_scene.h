@@ -132,14 +132,18 @@ struct SceneInstance {
   std::vector<TurningMap> turning;  ///< if not empty, in place of `transforms`
 };
 
-/// Many instances as one geometry, none of which moves.
+/// Many instances as one geometry.
 struct SceneInstances {
   std::vector<std::shared_ptr<const TraceScene>> children;
   struct Place {
-    Affine transform;
+    Affine transform;         ///< at the first key
     std::uint32_t child = 0;  ///< index into `children`
   };
   std::vector<Place> places;
+  /// The transforms at the other keys, those of a key side by side; none: the instances do not move.
+  std::vector<std::vector<Affine>> later_transforms;
+  /// If not empty, the maps at all keys, in place of all transforms.
+  std::vector<std::vector<TurningMap>> turning;
 };
 
 /// One thing in a scene.

@@ -482,7 +482,9 @@ MatrixFormat matrix_format(RTCFormat format) {
   }
 }
 
-TurningMap to_map(const RTCQuaternionDecomposition& q) {
+}  // namespace
+
+TurningMap to_turning_map(const RTCQuaternionDecomposition& q) {
   TurningMap map;
   const auto d = [](float f) { return static_cast<double>(f); };
   map.quaternion[0] = d(q.quaternion_r), map.quaternion[1] = d(q.quaternion_i);
@@ -493,8 +495,6 @@ TurningMap to_map(const RTCQuaternionDecomposition& q) {
   map.outer = {d(q.translation_x), d(q.translation_y), d(q.translation_z)};
   return map;
 }
-
-}  // namespace
 
 Affine read_transform(RTCFormat format, const void* data) {
   const MatrixFormat m = matrix_format(format);
@@ -518,20 +518,13 @@ void write_transform(const Affine& map, RTCFormat format, void* data) {
 }
 
 Affine transform_at(const Geometry& geometry, std::uint32_t index, float time) {
-#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
-  if (geometry.type == RTC_GEOMETRY_TYPE_INSTANCE_ARRAY) {
-    const View* const view = geometry.find(RTC_BUFFER_TYPE_TRANSFORM);
-    if (view == nullptr || index >= view->count)
-      fail(RTC_ERROR_INVALID_ARGUMENT, "no such instance in the array");
-    return read_transform(view->format, view->item<float>(index));
-  }
-#endif
   if (!geometry.is_instance()) fail(RTC_ERROR_INVALID_OPERATION, "the geometry is no instance");
-  if (index != 0) fail(RTC_ERROR_INVALID_ARGUMENT, "only an array has several instances");
-  SceneInstance instance;
-  instance.transforms = geometry.transforms, instance.turning = geometry.turning;
-  return map_at(instance,
-                KeyTime::of((time - geometry.begin) / (geometry.end - geometry.begin), geometry.time_steps));
+  if (index >= geometry.primitive_count())
+    fail(RTC_ERROR_INVALID_ARGUMENT, "there is no instance " + std::to_string(index));
+  SceneGeometry shape;
+  shape.shape = make_instance(geometry).shape;
+  const float own_time = (time - geometry.begin) / (geometry.end - geometry.begin);
+  return map_at(shape, index, own_time);
 }
 
 }  // namespace oktett::embree
@@ -575,7 +568,7 @@ RTC_API void rtcSetGeometryTransformQuaternion(RTCGeometry geometry, unsigned st
       fail(RTC_ERROR_INVALID_ARGUMENT,
            "time step " + std::to_string(step) + ", expected less than " + std::to_string(g.time_steps));
     g.turning.resize(g.time_steps);
-    g.turning[step] = to_map(*map);
+    g.turning[step] = to_turning_map(*map);
     g.change_shape();
   });
 }

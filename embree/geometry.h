@@ -117,6 +117,8 @@ Made make_instance(const Geometry& geometry);
 Affine read_transform(RTCFormat format, const void* data);
 void write_transform(const Affine& map, RTCFormat format, void* data);
 
+TurningMap to_turning_map(const RTCQuaternionDecomposition& q);
+
 /// The transform of an instance, number `index` of an array, at a time.
 Affine transform_at(const Geometry& geometry, std::uint32_t index, float time);
 

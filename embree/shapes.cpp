@@ -205,16 +205,35 @@ Made make_instance(const Geometry& g) {
   if (g.type == RTC_GEOMETRY_TYPE_INSTANCE_ARRAY) {
     SceneInstances many;
     for (std::size_t i = 0; i < g.scenes.size(); ++i) many.children.push_back(traced(i));
-    if (g.time_steps > 1) fail(RTC_ERROR_INVALID_OPERATION, "instances of an array do not move");
-    const View* const view = g.find(RTC_BUFFER_TYPE_TRANSFORM);
     const View* const which = g.find(RTC_BUFFER_TYPE_INDEX);
-    for (std::size_t i = 0; view != nullptr && i < view->count; ++i) {
+    const std::uint32_t count = g.primitive_count();
+    const bool turn =
+        count > 0 && g.view({RTC_BUFFER_TYPE_TRANSFORM, 0}).format == RTC_FORMAT_QUATERNION_DECOMPOSITION;
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t child = which != nullptr && i < which->count ? *which->item<std::uint32_t>(i) : 0;
       if (child >= many.children.size())
         fail(RTC_ERROR_INVALID_OPERATION, "instance " + std::to_string(i) + " shows scene " +
                                               std::to_string(child) + " of " +
                                               std::to_string(many.children.size()));
-      many.places.push_back({read_transform(view->format, view->item<float>(i)), child});
+      many.places.push_back({{}, child});
+    }
+    for (unsigned step = 0; step < g.time_steps && count > 0; ++step) {
+      const View& view = g.view({RTC_BUFFER_TYPE_TRANSFORM, step});
+      if (view.count != count || (view.format == RTC_FORMAT_QUATERNION_DECOMPOSITION) != turn)
+        fail(RTC_ERROR_INVALID_OPERATION, "the transforms of time step " + std::to_string(step) +
+                                              " are of another number or kind than those of step 0");
+      if (turn) {
+        std::vector<TurningMap>& key = many.turning.emplace_back();
+        for (std::uint32_t i = 0; i < count; ++i)
+          key.push_back(to_turning_map(*view.item<RTCQuaternionDecomposition>(i)));
+      } else if (step == 0) {
+        for (std::uint32_t i = 0; i < count; ++i)
+          many.places[i].transform = read_transform(view.format, view.item<float>(i));
+      } else {
+        std::vector<Affine>& key = many.later_transforms.emplace_back();
+        for (std::uint32_t i = 0; i < count; ++i)
+          key.push_back(read_transform(view.format, view.item<float>(i)));
+      }
     }
     made.shape = std::move(many);
     return made;

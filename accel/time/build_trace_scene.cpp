@@ -22,6 +22,7 @@ std::uint32_t key_count(const SceneGeometry& g) {
   if (const auto* const shape = std::get_if<UserShapePointer>(&g.shape))
     return std::max(1u, (*shape)->key_count());
   if (const auto* const instance = std::get_if<SceneInstance>(&g.shape)) return key_count(*instance);
+  if (const auto* const many = std::get_if<SceneInstances>(&g.shape)) return key_count(*many);
   return 1;
 }
 
@@ -79,6 +80,13 @@ void check(const SceneGeometry& g, const SceneInstances& shape) {
     if (place.child >= shape.children.size() || shape.children[place.child] == nullptr)
       refuse(g, "an instance shows scene " + std::to_string(place.child) + " of " +
                     std::to_string(shape.children.size()));
+  const auto check_keys = [&](const auto& keys) {
+    for (const auto& key : keys)
+      if (key.size() != shape.places.size())
+        refuse(g, "one key has " + std::to_string(key.size()) + " transforms of " +
+                      std::to_string(shape.places.size()) + " instances");
+  };
+  check_keys(shape.later_transforms), check_keys(shape.turning);
 }
 
 // ---- What does not move.
@@ -145,7 +153,7 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
       add(g, 0, instance(*one->child, map_at(*one, {})));
     if (const auto* const many = std::get_if<SceneInstances>(&own.shape))
       for (std::uint32_t k = 0; k < many->places.size(); ++k)
-        add(g, k, instance(scene.child(g, k), many->places[k].transform));
+        add(g, k, instance(scene.child(g, k), map_at(*many, k, {})));
   }
   BuildOptions plain = options;
   plain.mask = ~0u;
@@ -183,7 +191,7 @@ class MovingSource final : public TimeSource {
       return (*shape)->bounds(place.primitive, key);
     const Box& inner = scene_.child(place.geometry, place.primitive).bounds;
     if (const auto* const one = std::get_if<SceneInstance>(&g.shape)) return moved_bounds(*one, inner, key);
-    return moved_bounds(std::get<SceneInstances>(g.shape).places[place.primitive].transform, inner);
+    return moved_bounds(std::get<SceneInstances>(g.shape), place.primitive, inner, key);
   }
 
  private:

@@ -5,11 +5,6 @@
 
 namespace oktett {
 
-std::uint32_t key_count(const SceneInstance& instance) {
-  return static_cast<std::uint32_t>(instance.turning.empty() ? instance.transforms.size()
-                                                             : instance.turning.size());
-}
-
 namespace {
 
 using Quaternion = std::array<double, 4>;
@@ -88,33 +83,82 @@ Box grown(Box box, double by) {
   return {round_down(Vec3d(box.lo) - more), round_up(Vec3d(box.hi) + more)};
 }
 
-}  // namespace
+/// The keys of an instance: `transform(k)`, or `turning(k)` if they turn.
+template <class Transform, class Turning>
+struct Keys {
+  std::uint32_t count;
+  bool turn;
+  Transform transform;
+  Turning turning;
 
-Affine map_at(const SceneInstance& instance, const KeyTime& time) {
-  const std::size_t next = std::min<std::size_t>(time.key + 1, key_count(instance) - 1);
-  const double f = static_cast<double>(time.f);
-  if (!instance.turning.empty()) return map_of(instance.turning[time.key], instance.turning[next], f);
-  if (next == time.key) return instance.transforms[time.key];
-  return between(instance.transforms[time.key], instance.transforms[next], f);
+  Affine at(const KeyTime& time) const {
+    const std::uint32_t next = std::min(time.key + 1, count - 1);
+    const double f = static_cast<double>(time.f);
+    if (turn) return map_of(turning(time.key), turning(next), f);
+    if (next == time.key) return transform(time.key);
+    return between(transform(time.key), transform(next), f);
+  }
+
+  Box bounds(const Box& box, std::uint32_t key) const {
+    if (box.empty()) return {};
+    const Box image = transform_bounds(at({key, 0}), box);
+    if (image.empty()) return {};
+    const Vec3f e = image.extent();
+    const float size = std::max({e.x, e.y, e.z, max_component(abs(image.lo)), max_component(abs(image.hi))});
+    const Box moved = grown(image, 0x1p-20 * static_cast<double>(size));
+    if (!turn) return moved;
+    double most = 0;
+    if (key > 0) most = bulge(turning(key - 1), turning(key), box);
+    if (key + 1 < count) most = std::max(most, bulge(turning(key), turning(key + 1), box));
+    return grown(moved, most * (1 + 0x1p-20));
+  }
+};
+
+auto keys_of(const SceneInstance& one) {
+  return Keys{key_count(one), !one.turning.empty(),
+              [&one](std::uint32_t k) -> const Affine& { return one.transforms[k]; },
+              [&one](std::uint32_t k) -> const TurningMap& { return one.turning[k]; }};
 }
 
-Box moved_bounds(const Affine& map, const Box& box) {
-  const Box moved = transform_bounds(map, box);
-  if (moved.empty()) return moved;
-  const Vec3f e = moved.extent();
-  const float size = std::max({e.x, e.y, e.z, max_component(abs(moved.lo)), max_component(abs(moved.hi))});
-  return grown(moved, 0x1p-20 * static_cast<double>(size));
+auto keys_of(const SceneInstances& many, std::uint32_t i) {
+  return Keys{key_count(many), !many.turning.empty(),
+              [&many, i](std::uint32_t k) -> const Affine& {
+                return k == 0 ? many.places[i].transform : many.later_transforms[k - 1][i];
+              },
+              [&many, i](std::uint32_t k) -> const TurningMap& { return many.turning[k][i]; }};
+}
+
+}  // namespace
+
+std::uint32_t key_count(const SceneInstance& instance) {
+  return static_cast<std::uint32_t>(instance.turning.empty() ? instance.transforms.size()
+                                                             : instance.turning.size());
+}
+
+std::uint32_t key_count(const SceneInstances& instances) {
+  return static_cast<std::uint32_t>(instances.turning.empty() ? 1 + instances.later_transforms.size()
+                                                              : instances.turning.size());
+}
+
+Affine map_at(const SceneInstance& instance, const KeyTime& time) { return keys_of(instance).at(time); }
+
+Affine map_at(const SceneInstances& instances, std::uint32_t index, const KeyTime& time) {
+  return keys_of(instances, index).at(time);
+}
+
+Affine map_at(const SceneGeometry& geometry, std::uint32_t index, float own_time) {
+  if (const auto* const one = std::get_if<SceneInstance>(&geometry.shape))
+    return map_at(*one, KeyTime::of(own_time, key_count(*one)));
+  const auto& many = std::get<SceneInstances>(geometry.shape);
+  return map_at(many, index, KeyTime::of(own_time, key_count(many)));
 }
 
 Box moved_bounds(const SceneInstance& instance, const Box& box, std::uint32_t key) {
-  if (box.empty()) return {};
-  const Box moved = moved_bounds(map_at(instance, {key, 0}), box);
-  if (moved.empty() || instance.turning.empty()) return moved;
-  double most = 0;
-  if (key > 0) most = bulge(instance.turning[key - 1], instance.turning[key], box);
-  if (key + 1 < key_count(instance))
-    most = std::max(most, bulge(instance.turning[key], instance.turning[key + 1], box));
-  return grown(moved, most * (1 + 0x1p-20));
+  return keys_of(instance).bounds(box, key);
+}
+
+Box moved_bounds(const SceneInstances& instances, std::uint32_t index, const Box& box, std::uint32_t key) {
+  return keys_of(instances, index).bounds(box, key);
 }
 
 }  // namespace oktett

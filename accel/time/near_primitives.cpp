@@ -211,10 +211,7 @@ class NearWalk {
     const SceneGeometry& geometry = scene_.geometries[place.geometry];
     if (std::holds_alternative<std::shared_ptr<const UserShape>>(geometry.shape))
       return tell(geometry, place.primitive);
-    const auto* const one = std::get_if<SceneInstance>(&geometry.shape);
-    enter(geometry, place.geometry, place.primitive,
-          one != nullptr ? map_at(*one, KeyTime::of(part.own_time(time_), key_count(*one)))
-                         : std::get<SceneInstances>(geometry.shape).places[place.primitive].transform);
+    enter(geometry, place.geometry, place.primitive, map_at(geometry, place.primitive, part.own_time(time_)));
   }
 
   const TraceScene& scene_;

@@ -55,8 +55,8 @@ class TraceScene {
   std::shared_ptr<const Accel> fixed;  ///< never null
   /// Of geometry i of `fixed`: its place in `geometries`, and which of an array of instances it is.
   std::vector<ItemTable::Place> fixed_place;
-  /// The normals of the triangles of geometry i of `fixed`, if it is a mesh that stands as it is: a hit then reads
-  /// one place in memory instead of six.
+  /// The normals of the triangles of geometry i of `fixed`, if it is a mesh that stands as it is: a hit then
+  /// reads one place in memory instead of six.
   std::vector<Column<Vec3f>> normals;
   std::vector<MovingPart> moving;
   Box bounds;                ///< at all times

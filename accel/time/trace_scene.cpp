@@ -333,11 +333,7 @@ class SceneTracer {
   /// Enters a scene that an instance shows.
   bool enter(const SceneGeometry& geometry, const ItemTable::Place& place, const Ray& ray, SceneHit& found) {
     if (chain_.count == InstanceChain::kMost) return false;
-    Affine map;
-    if (const auto* const one = std::get_if<SceneInstance>(&geometry.shape))
-      map = map_at(*one, KeyTime::of(own_time_, key_count(*one)));
-    else
-      map = std::get<SceneInstances>(geometry.shape).places[place.primitive].transform;
+    const Affine map = map_at(geometry, place.primitive, own_time_);
     const Affine to_child = map.inverse();
     if (!map.is_invertible(to_child)) return false;
     InstanceChain chain = chain_;
