@@ -26,6 +26,5 @@ RTC_API void* rtcThreadLocalAlloc(RTCThreadLocalAllocator, size_t, size_t) {
 }
 RTC_API void rtcRetainBVH(RTCBVH) { no_builder(nullptr); }
 RTC_API void rtcReleaseBVH(RTCBVH) { no_builder(nullptr); }
-#if OKTETT_EMBREE == 3
+/// Its header does not have it in all versions.
 RTC_API void rtcMakeStaticBVH(RTCBVH) { no_builder(nullptr); }
-#endif

@@ -1,6 +1,6 @@
 #include "embree/callbacks.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 namespace oktett::embree {
@@ -162,7 +162,7 @@ bool UserCallbacks::any_hit(std::uint32_t primitive, const Ray& ray, const RayCo
   arguments.geometry = &geometry_, arguments.query = &query;
   occluded(&arguments);
   // Where on the ray it is is not told.
-  hit.t = ray.tmax;
+  hit.t = std::min(ray.tmax, std::numeric_limits<float>::max());
   return query.ray->tfar < 0;
 }
 

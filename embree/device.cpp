@@ -9,6 +9,7 @@ namespace oktett::embree {
 namespace {
 
 thread_local RTCError error_without_device = RTC_ERROR_NONE;
+thread_local std::string message_without_device;
 
 /// Calls f(name, value) for the settings `name=value` of a configuration.
 template <class Function>
@@ -58,6 +59,7 @@ Device::Device(const char* config) : isa_(default_isa()) {
 void Device::report(Device* device, RTCError code, const std::string& message) noexcept {
   if (device == nullptr) {
     if (error_without_device == RTC_ERROR_NONE) error_without_device = code;
+    message_without_device = message;
     return;
   }
   RTCErrorFunction function;
@@ -66,6 +68,7 @@ void Device::report(Device* device, RTCError code, const std::string& message) n
     const std::lock_guard lock(device->mutex_);
     RTCError& error = device->errors_[std::this_thread::get_id()];
     if (error == RTC_ERROR_NONE) error = code;
+    device->message_ = message;
     function = device->error_function_, user = device->error_user_;
   }
   if (device->verbose_ > 0) std::fprintf(stderr, "Oktett: %s\n", message.c_str());
@@ -80,6 +83,12 @@ RTCError Device::take_error(Device* device) {
   const RTCError error = found->second;
   device->errors_.erase(found);
   return error;
+}
+
+const char* Device::last_message(Device* device) {
+  if (device == nullptr) return message_without_device.c_str();
+  const std::lock_guard lock(device->mutex_);
+  return device->message_.c_str();
 }
 
 void Device::set_error_function(RTCErrorFunction function, void* user) {
@@ -103,6 +112,8 @@ ssize_t Device::property(RTCDeviceProperty property) const {
   const auto number = static_cast<int>(property);
   // From here on Embree has tests of its own insides, of which there are none.
   if (number >= 2000000 && number < 4000000) return 0;
+  // RTC_DEVICE_PROPERTY_CPU_DEVICE and _SYCL_DEVICE, which not all headers of Embree 4 have.
+  if (OKTETT_EMBREE == 4 && (number == 140 || number == 141)) return number == 140;
   switch (property) {
     case RTC_DEVICE_PROPERTY_VERSION:
       return RTC_VERSION;
@@ -189,3 +200,34 @@ RTC_API void rtcSetDeviceMemoryMonitorFunction(RTCDevice device, RTCMemoryMonito
                                                void* user) {
   guarded(device_of(device), [&] { object_of(device).set_memory_monitor(function, user); });
 }
+
+#if OKTETT_EMBREE == 4
+
+// Later headers of Embree 4 have these two.
+
+RTC_API const char* rtcGetErrorString(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_NONE:
+      return "RTC_ERROR_NONE";
+    case RTC_ERROR_UNKNOWN:
+      return "RTC_ERROR_UNKNOWN";
+    case RTC_ERROR_INVALID_ARGUMENT:
+      return "RTC_ERROR_INVALID_ARGUMENT";
+    case RTC_ERROR_INVALID_OPERATION:
+      return "RTC_ERROR_INVALID_OPERATION";
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "RTC_ERROR_OUT_OF_MEMORY";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "RTC_ERROR_UNSUPPORTED_CPU";
+    case RTC_ERROR_CANCELLED:
+      return "RTC_ERROR_CANCELLED";
+    default:
+      return "an error that this version does not know";
+  }
+}
+
+RTC_API const char* rtcGetDeviceLastErrorMessage(RTCDevice device) {
+  return Device::last_message(device_of(device));
+}
+
+#endif

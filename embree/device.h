@@ -26,6 +26,8 @@ class Device {
   static void report(Device* device, RTCError code, const std::string& message) noexcept;
   /// The error of the calling thread, which is forgotten.
   static RTCError take_error(Device* device);
+  /// What was wrong last, in any thread; without a device, in the calling one.
+  static const char* last_message(Device* device);
 
   void set_error_function(RTCErrorFunction function, void* user);
   void set_memory_monitor(RTCMemoryMonitorFunction function, void* user);
@@ -42,6 +44,7 @@ class Device {
   int verbose_ = 0;
   std::mutex mutex_;
   std::map<std::thread::id, RTCError> errors_;
+  std::string message_;  ///< the last one
   RTCErrorFunction error_function_ = nullptr;
   void* error_user_ = nullptr;
   std::atomic<RTCMemoryMonitorFunction> memory_function_{nullptr};

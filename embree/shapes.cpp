@@ -12,13 +12,22 @@ namespace oktett::embree {
 
 namespace {
 
+/// Vertices farther away are taken as not finite, as Embree takes them: one of them would make the tolerances
+/// of all rays through a scene so large that they meet every box.
+constexpr float kFarthest = 1.844e18f;
+
+Vec3f near_or_nan(const Vec3f& p) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  return max_component(abs(p)) <= kFarthest ? p : Vec3f{nan, nan, nan};
+}
+
 /// The positions of one time step, and at the end one that is not finite, for triangles without a surface.
 Column<Vec3f> read_positions(const Geometry& g, unsigned step) {
   const View* const view = g.find(RTC_BUFFER_TYPE_VERTEX, step);
   const std::size_t count = view != nullptr ? view->count : 0;
   Column<Vec3f> positions;
   positions.resize_uninitialized(count + 1);
-  for (std::size_t i = 0; i < count; ++i) positions[i] = view->vec3(i);
+  for (std::size_t i = 0; i < count; ++i) positions[i] = near_or_nan(view->vec3(i));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   positions[count] = {nan, nan, nan};
   return positions;
@@ -133,7 +142,7 @@ RoundPointKeys read_points(const Geometry& g) {
     const View* const view = g.find(RTC_BUFFER_TYPE_VERTEX, step);
     keys[step].reserve(view != nullptr ? view->count : 0);
     for (std::size_t i = 0; view != nullptr && i < view->count; ++i)
-      keys[step].push_back({view->vec3(i), view->item<float>(i)[3]});
+      keys[step].push_back({near_or_nan(view->vec3(i)), view->item<float>(i)[3]});
   }
   return keys;
 }
@@ -157,8 +166,9 @@ Made make_points(const Geometry& g) {
     made.shape = make_moving_spheres(std::move(keys));
   } else {
     SpheresShape spheres;
+    // A radius of zero is nothing.
     for (const RoundPoint& p : keys[0])
-      spheres.spheres.push_back({Vec3d(p.center), static_cast<double>(p.radius)});
+      spheres.spheres.push_back({Vec3d(p.center), p.radius > 0 ? static_cast<double>(p.radius) : 0});
     oktett::Geometry fixed;
     fixed.shape = std::move(spheres);
     made.shape = std::move(fixed);

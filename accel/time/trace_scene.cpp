@@ -325,8 +325,7 @@ class SceneTracer {
     if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context, found)
                               : shape.any_hit(primitive, ray, context, found)))
       return false;
-    if (Q == Query::closest && (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)))
-      return false;
+    if (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
     return !filters_ || judge(geometry, ray, {&found, 1}) != nullptr;
   }
 

@@ -41,7 +41,7 @@ std::vector<Scene> ways(const SceneGeometry& g) {
   const Scene plain = build_trace_scene({g});
   const Scene shown = build_trace_scene({thing(SceneInstance{plain, {Affine{}}, {}}, 70)});
   return {plain, shown, build_trace_scene({thing(SceneInstance{plain, moves, {}}, 71)}),
-          build_trace_scene({thing(SceneInstances{{plain}, {{Affine{}, 0}}}, 72)}),
+          build_trace_scene({thing(SceneInstances{{plain}, {{Affine{}, 0}}, {}, {}}, 72)}),
           build_trace_scene({thing(SceneInstance{shown, moves, {}}, 73)})};
 }
 

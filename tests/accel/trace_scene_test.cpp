@@ -261,7 +261,7 @@ TEST(TraceScenes, InstancesNestEightLevelsDeep) {
     if (level % 2 == 1) keys.push_back(last.back());
     if (level % 2 == 0) last.back() = first.back();
     if (level % 3 == 2) {
-      scene = build_trace_scene({thing(SceneInstances{{scene}, {{first.back(), 0}}}, level)});
+      scene = build_trace_scene({thing(SceneInstances{{scene}, {{first.back(), 0}}, {}, {}}, level)});
       last.back() = first.back();
     } else {
       scene = build_trace_scene({thing(shown(scene, keys), level)});
@@ -350,7 +350,7 @@ TEST(TraceScenes, OfEqualDistancesWhatIsGivenFirstCountsAndInstancesLast) {
   const auto add = [&](auto shape) { all.push_back(thing(shape, static_cast<std::uint32_t>(all.size()))); };
   add(shown(fixed_child)), add(shown(fixed_child, moves)), add(shown(moving_child));
   add(shown(moving_child, moves));
-  add(SceneInstances{{fixed_child, moving_child}, {{Affine{}, 1}, {Affine{}, 0}}});
+  add(SceneInstances{{fixed_child, moving_child}, {{Affine{}, 1}, {Affine{}, 0}}, {}, {}});
   add(two), add(fixed), add(three), add(two), add(fixed);
   Roll dice(5);
   for (int i = 0; i < 200; ++i) {
@@ -468,8 +468,8 @@ TEST(TraceScenes, WhatDoesNotFitIsRefused) {
   expect(thing(std::shared_ptr<const UserShape>()), "expected a shape");
   expect(thing(shown(nullptr)), "expected a scene");
   expect(thing(shown(child, {})), "at least one transform");
-  expect(thing(SceneInstances{{child}, {{Affine{}, 1}}}), "scene 1 of 1");
-  expect(thing(SceneInstances{{nullptr}, {{Affine{}, 0}}}), "scene 0 of 1");
+  expect(thing(SceneInstances{{child}, {{Affine{}, 1}}, {}, {}}), "scene 1 of 1");
+  expect(thing(SceneInstances{{nullptr}, {{Affine{}, 0}}, {}, {}}), "scene 0 of 1");
   expect(thing(Geometry{InstanceGeometry{build_accel({})}, {}, kNoId}), "is a SceneInstance");
   const Scene endless = build_trace_scene({thing(Geometry{PlaneShape{}, {}, kNoId})});
   EXPECT_EQ(refused({thing(shown(endless))}), "");
