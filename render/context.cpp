@@ -72,8 +72,11 @@ std::uint32_t first_samples(const IntegratorSettings& settings) {
 
 std::vector<LightSource> light_sources(const Scene& scene) {
   std::vector<LightSource> sources;
-  for (const Light& light : scene.lights)
-    if (lights_whitted(light)) sources.push_back(light_source(light));
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (!lights_whitted(scene.lights[i])) continue;
+    sources.push_back(light_source(scene.lights[i]));
+    sources.back().list = light_list_number(list_of_light(scene, i));
+  }
   return sources;
 }
 
@@ -116,6 +119,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.area_lights = area_lights(lights, textures, c.settings);
   c.interiors = interiors(scene, world);
   c.tracks_dielectrics = world.tracks_dielectrics;
+  c.hides_objects = hides_objects(world), c.bounces_differ = bounces_differ(world);
+  c.shadows_decide = traits(c.settings.kind).traces_paths && shadows_differ(world);
   if (c.tracks_dielectrics) {
     for (const Medium& medium : scene.media) c.media.emplace_back(medium);
     c.outer_medium = scene.medium;

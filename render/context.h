@@ -43,7 +43,11 @@ struct RenderContext {
   bool some_only_send_rays = false;  ///< some of `materials`, see only_sends_rays(); for Whitted's model
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
-  bool tracks_dielectrics = false;     ///< rays must know in which solids they are, see dielectric_stack.h
+  bool tracks_dielectrics = false;  ///< rays must know in which solids they are, see dielectric_stack.h
+  bool hides_objects = false;       ///< rays of some kind do not meet all objects, see World::seen_by
+  bool bounces_differ = false;      ///< those of bounces of different kinds meet different objects
+  /// Path tracing where shadow rays meet other objects than bounces, see transport/met_lights.h.
+  bool shadows_decide = false;
   std::vector<MediumTracker> media;    ///< numbered as in Scene::media
   std::uint32_t outer_medium = kNoId;  ///< the medium outside of all solids
   /// Extinction of homogeneous interiors, numbered as World::materials, for Whitted's model; empty if no

@@ -84,6 +84,81 @@ static bool is_entered(const Object& object, const Scene& scene) {
          has_inside(object, scene);
 }
 
+/// Throws Error if light enters the object, or what it shows, of this outer material.
+static void check_not_entered(const Object& object, std::uint32_t outer, const Scene& scene,
+                              const Location& where) {
+  const std::uint32_t material = outer != kNoId ? outer : object.material;
+  const auto check_all = [&](const std::vector<Object>& objects) {
+    for (const Object& inner : objects) check_not_entered(inner, material, scene, where);
+  };
+  if (const auto* csg = std::get_if<CsgShape>(&object.shape)) return check_all(*csg->operands);
+  const auto* const instance = std::get_if<InstanceShape>(&object.shape);
+  if (instance != nullptr && instance->prototype < scene.prototypes.size())
+    return check_all(scene.prototypes[instance->prototype].objects);
+  const auto lets_in = [&](std::uint32_t number) { return lets_light_in(scene, number); };
+  const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+  if (material != kNoId || mesh == nullptr ? lets_in(material)
+                                           : std::ranges::any_of(mesh->slot_materials, lets_in))
+    throw Error(where, "with media or priorities, what light enters must be visible to all rays");
+}
+
+// ---- What rays of each kind meet.
+
+/// Builds what rays of each kind meet of `geometries`, whose masks have the bits of Object::visible_to and
+/// whose structure is `all`. `child_seen_by` finds what they meet of a structure inside; null: all.
+template <class Find>
+static SeenBy build_seen_by(const std::vector<Geometry>& geometries, const Find& child_seen_by,
+                            const BuildOptions& options) {
+  SeenBy seen;
+  // What stands for each child in the structure of each kind; a hidden geometry has the list itself.
+  std::array<std::vector<const void*>, kRayKinds> children;
+  for (std::size_t k = 0; k < kRayKinds; ++k) {
+    bool differs = false;
+    const std::uint32_t mask = std::uint32_t{1} << k;
+    std::vector<Geometry> shown = geometries;
+    const auto put = [&](std::shared_ptr<const Accel>& child) {
+      const SeenBy* const inner = child_seen_by(child.get());
+      if (inner != nullptr && (*inner)[k] != nullptr) child = (*inner)[k], differs = true;
+      children[k].push_back(child.get());
+    };
+    for (Geometry& g : shown) {
+      if (auto* const instance = std::get_if<InstanceGeometry>(&g.shape)) put(instance->child);
+      if (auto* const list = std::get_if<InstanceList>(&g.shape))
+        for (auto& child : list->children) put(child);
+      if ((g.mask & mask) == 0)
+        children[k].push_back(&geometries), differs = true;
+      else
+        children[k].push_back(nullptr);
+    }
+    if (!differs) continue;
+    const auto same = std::find(children.begin(), children.begin() + k, children[k]) - children.begin();
+    if (static_cast<std::size_t>(same) < k && seen[same] != nullptr) {
+      seen[k] = seen[same];
+      continue;
+    }
+    BuildOptions of_kind = options;
+    of_kind.mask = mask;
+    seen[k] = build_accel(std::move(shown), of_kind);
+  }
+  return seen;
+}
+
+static bool hides(const SeenBy& seen) {
+  return std::ranges::any_of(seen, [](const auto& accel) { return accel != nullptr; });
+}
+
+bool hides_objects(const World& world) { return hides(world.seen_by); }
+
+bool bounces_differ(const World& world) {
+  return std::ranges::any_of(
+      kBounceKinds, [&](RayKind kind) { return &seen_by(world, kind) != &seen_by(world, RayKind::diffuse); });
+}
+
+bool shadows_differ(const World& world) {
+  return std::ranges::any_of(
+      kBounceKinds, [&](RayKind kind) { return &seen_by(world, kind) != &seen_by(world, RayKind::shadow); });
+}
+
 // ---- Geometries of objects.
 
 static void set_materials(const Scene& scene, World& world) {
@@ -101,15 +176,18 @@ namespace {
 /// Turns lists of objects into acceleration structures, one list after the other.
 class WorldBuilder {
  public:
-  WorldBuilder(const Scene& scene, const BuildOptions& options) : scene_(scene), options_(options) {}
+  WorldBuilder(const Scene& scene, const BuildOptions& options)
+      : scene_(scene), options_(options), hides_objects_(hides_any(scene)) {}
 
   World build() {
     world_.tracks_dielectrics = needs_dielectrics(scene_);
+    set_light_lists();
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
+    world_.seen_by = seen_by_[world_.accel.get()];
     world_.bounds = bounds(*world_.accel);
     if (!world_.moving.empty()) {
-      world_.still = world_.accel;
+      world_.still = world_.accel, world_.still_seen_by = world_.seen_by;
       pose(world_, 0, options_);
     }
     world_.sah_cost = stats(*world_.accel).sah_cost;
@@ -119,6 +197,14 @@ class WorldBuilder {
   }
 
  private:
+  static bool hides_any(const Scene& scene) {
+    const auto is_hidden = [](const Object& object) { return object.visible_to != kAllRays; };
+    return std::ranges::any_of(scene.objects, is_hidden) ||
+           std::ranges::any_of(scene.prototypes, [&](const Prototype& prototype) {
+             return std::ranges::any_of(prototype.objects, is_hidden);
+           });
+  }
+
   std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
     std::vector<Geometry> geometries;
     std::vector<std::uint32_t> shown;  // as in StructureObjects
@@ -139,12 +225,30 @@ class WorldBuilder {
       }
       const std::uint32_t id = next_object();
       if (!make_geometry(object, geometry)) continue;
-      shown.push_back(id);
+      // A hidden combination has a structure of its own, as hits would be numbered otherwise without it.
+      const bool wraps = geometry.mask != kAllRays && std::holds_alternative<CsgGeometry>(geometry.shape);
+      if (wraps) geometry = own_structure(std::move(geometry), id);
+      shown.push_back(wraps ? kNoId : id);
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
       if (instance && object.transform.is_invertible()) ++instances;
       geometries.push_back(std::move(geometry));
     }
     return build_counted(std::move(geometries), std::move(shown), instances);
+  }
+
+  void set_light_lists() {
+    for (std::size_t i = 0; i < scene_.light_lists.size(); ++i)
+      if (scene_.light_lists[i].lights_others)
+        world_.lists_of_others = static_cast<std::uint16_t>(world_.lists_of_others | 1u << i);
+    world_.has_light_lists = !scene_.light_lists.empty();
+  }
+
+  /// An instance of a structure of the geometry alone, which shows object `id`.
+  Geometry own_structure(Geometry geometry, std::uint32_t id) {
+    Geometry instance;
+    instance.mask = std::exchange(geometry.mask, kAllRays);
+    instance.shape = InstanceGeometry{build_counted({std::move(geometry)}, {id}, 0)};
+    return instance;
   }
 
   /// The number of the object that is added next.
@@ -154,13 +258,31 @@ class WorldBuilder {
   /// so many of its items are `instances`.
   std::shared_ptr<const Accel> build_counted(std::vector<Geometry> geometries,
                                              std::vector<std::uint32_t> shown, std::uint64_t instances) {
+    std::vector<Geometry> seen;
+    if (hides_objects_) seen = geometries;
     std::shared_ptr<const Accel> accel = build_accel(std::move(geometries), options_);
     structure_objects_.emplace(accel.get(), std::move(shown));
+    if (hides_objects_) {
+      // What rays of each kind meet of structures that have been built.
+      const auto child_seen_by = [this](const Accel* child) {
+        const auto found = seen_by_.find(child);
+        return found != seen_by_.end() ? &found->second : nullptr;
+      };
+      const SeenBy own = build_seen_by(seen, child_seen_by, options_);
+      count_seen_by(own);
+      seen_by_.emplace(accel.get(), own);
+    }
     const AccelStats s = stats(*accel);
     world_.triangles += s.triangles;
     world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
     world_.bvh_bytes += s.bytes();
     return accel;
+  }
+
+  void count_seen_by(const SeenBy& seen) {
+    for (std::size_t k = 0; k < kRayKinds; ++k)
+      if (seen[k] != nullptr && std::find(seen.begin(), seen.begin() + k, seen[k]) == seen.begin() + k)
+        world_.bvh_bytes += stats(*seen[k]).bytes();
   }
 
   void add_moving(const Object& object) {
@@ -170,10 +292,13 @@ class WorldBuilder {
     Geometry geometry;
     const std::uint32_t id = next_object();
     if (!make_geometry(unmoved, geometry)) return;
+    geometry.mask = kAllRays;
     if (const auto* instance = std::get_if<InstanceGeometry>(&geometry.shape))
-      world_.moving.push_back({instance->child, object.motion, geometry.user, id});
+      world_.moving.push_back({instance->child, object.motion, geometry.user, id, object.visible_to,
+                               seen_by_[instance->child.get()]});
     else
-      world_.moving.push_back({build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId});
+      world_.moving.push_back(
+          {build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId, object.visible_to});
   }
 
   static bool is_bent(const Object& object) {
@@ -185,9 +310,9 @@ class WorldBuilder {
   void add_bent(const Object& object) {
     const std::uint32_t id = next_object();
     const auto& mesh = std::get<MeshShape>(object.shape);
-    world_.objects.push_back({object.material, mesh.slot_materials, solid(object, id), object.name});
+    add_object(object, id).slots = mesh.slot_materials;
     MovingObject moving;
-    moving.motion = object.motion;
+    moving.motion = object.motion, moving.visible_to = object.visible_to;
     if (moving.motion == nullptr && !object.transform.is_identity()) {
       Motion still;
       still.factors.push_back({{0, object.transform}});
@@ -206,7 +331,9 @@ class WorldBuilder {
     std::size_t end = first;
     while (end < objects.size()) {
       const auto* instance = std::get_if<InstanceShape>(&objects[end].shape);
-      if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion) break;
+      if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion ||
+          objects[end].visible_to != kAllRays)
+        break;
       ++end;
     }
     return end - first;
@@ -219,7 +346,7 @@ class WorldBuilder {
     for (std::size_t k = first; k < first + count; ++k) {
       const Object& object = objects[k];
       const std::uint32_t id = next_object();
-      world_.objects.push_back({object.material, {}, solid(object, id), object.name});
+      add_object(object, id);
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
           {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
@@ -229,11 +356,21 @@ class WorldBuilder {
     return list;
   }
 
+  /// Adds object number `id`.
+  ObjectMaterials& add_object(const Object& object, std::uint32_t id) {
+    if (object.visible_to != kAllRays && world_.tracks_dielectrics)
+      check_not_entered(object, kNoId, scene_, object.where);
+    ObjectMaterials& own = world_.objects.emplace_back();
+    own.material = object.material, own.solid = solid(object, id), own.name = object.name;
+    own.listed = object.listed, own.light_list = object.light_list;
+    return own;
+  }
+
   bool make_geometry(const Object& object, Geometry& geometry) {
     const std::uint32_t id = next_object();
-    world_.objects.push_back({object.material, {}, solid(object, id), object.name});
+    add_object(object, id);
     geometry.transform = object.transform;
-    geometry.user = id;
+    geometry.user = id, geometry.mask = object.visible_to;
     if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;
     // Without a material of its own, an instance shows those of the objects inside; a combination always
     // does, as its operands have been given its material if they had none.
@@ -358,7 +495,9 @@ class WorldBuilder {
   std::vector<std::shared_ptr<const Accel>> prototypes_;
   StructureObjects structure_objects_;
   std::set<const TriangleMesh*> seen_;
-  std::uint32_t combination_ = kNoId;  ///< the object whose operands are being made
+  std::uint32_t combination_ = kNoId;                 ///< the object whose operands are being made
+  const bool hides_objects_;                          ///< some object is not seen by all rays
+  std::unordered_map<const Accel*, SeenBy> seen_by_;  ///< of the structures of lists
 };
 
 }  // namespace
@@ -370,6 +509,7 @@ World build_world(const Scene& scene, const BuildOptions& options) {
 World with_meshes(const World& others, const Scene& scene, std::size_t first,
                   std::shared_ptr<const Accel> top) {
   World world = others;
+  world.seen_by = {};
   set_materials(scene, world);
   std::vector<std::uint32_t> shown;  // as in StructureObjects
   const bool shows_others = stats(*others.accel).items > 0;
@@ -454,12 +594,21 @@ Box tight_bounds(const World& world) {
 void pose(World& world, double time, const BuildOptions& options) {
   std::vector<Geometry> geometries;
   if (world.still != nullptr && stats(*world.still).items > 0)
-    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId});
+    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId, kAllRays});
+  bool hides_any = hides(world.still_seen_by);
   for (MovingObject& object : world.moving) {
     if (object.bent != nullptr) bend(world, object, time, options);
     geometries.push_back({InstanceGeometry{object.shape},
-                          object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user});
+                          object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user,
+                          object.visible_to});
+    hides_any = hides_any || object.visible_to != kAllRays || hides(object.seen_by);
   }
+  const auto child_seen_by = [&](const Accel* child) -> const SeenBy* {
+    if (child == world.still.get()) return &world.still_seen_by;
+    const auto found = std::ranges::find(world.moving, child, [](const auto& m) { return m.shape.get(); });
+    return found != world.moving.end() ? &found->seen_by : nullptr;
+  };
+  world.seen_by = hides_any ? build_seen_by(geometries, child_seen_by, options) : SeenBy{};
   world.accel = build_accel(std::move(geometries), options);
   world.bounds = bounds(*world.accel);
 }
@@ -474,21 +623,46 @@ static std::uint32_t object_of_geometry(const World& world, const Accel& accel, 
   return geometry < first ? kNoId : world.moving[geometry - first].instance;
 }
 
-std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user) {
+/// Calls visit(number, is_combination) for the instances and combinations around a hit, outermost first, by
+/// their numbers as objects, until it returns true. Then returns kNoId, else the object whose surface was met
+/// if its structure tells.
+template <class Visit>
+static std::uint32_t visit_objects_around(const World& world, const Hit& hit, const Visit& visit) {
   const Accel* accel = world.accel.get();
   std::uint32_t combination = kNoId;  // the object whose solids `accel` holds
   for (std::uint32_t chain = hit.instance; chain != kNoId;) {
     const ChainLink link = outermost_link(*accel, chain);
     const std::uint32_t first = combination != kNoId ? combination + 1 + link.geometry
                                                      : object_of_geometry(world, *accel, link.geometry);
-    if (!link.is_combination && first != kNoId) {
-      const ObjectMaterials& object = world.objects[first + link.primitive];
-      if (!object.name.empty() || object.material != kNoId) return first + link.primitive;
-    }
+    if (first != kNoId && visit(first + link.primitive, link.is_combination)) return kNoId;
     combination = link.is_combination ? first : kNoId;
     accel = link.child, chain = link.rest;
   }
-  return user;
+  const std::uint32_t geometry = accel->geometry_of(hit.item);
+  if (combination != kNoId) return combination + 1 + geometry;
+  return world.structure_objects->contains(accel) ? object_of_geometry(world, *accel, geometry) : kNoId;
+}
+
+std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user) {
+  std::uint32_t whole = user;
+  visit_objects_around(world, hit, [&](std::uint32_t number, bool is_combination) {
+    const ObjectMaterials& object = world.objects[number];
+    if (is_combination || (object.name.empty() && object.material == kNoId)) return false;
+    whole = number;
+    return true;
+  });
+  return whole;
+}
+
+std::uint16_t find_light_lists(const World& world, const Hit& hit, std::uint32_t user) {
+  unsigned listed = user < world.objects.size() ? world.objects[user].listed : 0u;
+  const auto add = [&](std::uint32_t number, bool) {
+    listed |= world.objects[number].listed;
+    return false;
+  };
+  // An instance of a material of its own has replaced the number of the object inside.
+  if (const std::uint32_t inner = visit_objects_around(world, hit, add); inner != kNoId) add(inner, false);
+  return static_cast<std::uint16_t>(listed ^ world.lists_of_others);
 }
 
 const Material& material_at(const World& world, const SurfaceInteraction& surface) {

@@ -145,6 +145,34 @@ void describe_world(const World& world, RenderReport& report) {
   report.sah_cost = world.sah_cost;
 }
 
+/// An object that not all rays meet.
+const Object* find_hidden(const Scene& scene) {
+  const auto is_hidden = [](const Object& object) { return object.visible_to != kAllRays; };
+  const auto find = [&](const std::vector<Object>& objects) {
+    const auto found = std::ranges::find_if(objects, is_hidden);
+    return found != objects.end() ? &*found : nullptr;
+  };
+  if (const Object* const object = find(scene.objects)) return object;
+  for (const Prototype& prototype : scene.prototypes)
+    if (const Object* const object = find(prototype.objects)) return object;
+  return nullptr;
+}
+
+/// Throws Error for what cannot be honoured together.
+void check_visibility(const Scene& scene, const SceneLights& lights, const LightGroups& groups) {
+  if (wants_photons(scene.integrator)) {
+    if (const Object* const object = find_hidden(scene))
+      throw Error(object->where, "photons of 'caustics' do not know which rays an object is visible to");
+    if (!scene.light_lists.empty())
+      throw Error(scene.light_lists.front().where, "photons of 'caustics' light all objects");
+  }
+  const std::vector<std::uint32_t>& visible = lights.set().visible();
+  const auto is_listed = [&](std::uint32_t emitter) { return lights.set().list(emitter) != kNoLightList; };
+  if (groups.any() && visible.size() > 1 && std::ranges::any_of(visible, is_listed))
+    throw Error(scene.light_lists.front().where,
+                "light groups cannot tell several environments apart if one lights only some objects");
+}
+
 /// Begins the film, if there is one, and returns the tiles to render.
 std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture& picture,
                                      const RenderOptions& options) {
@@ -243,6 +271,7 @@ RenderResult PreparedScene::render(const RenderOptions& options) {
   const Mattes mattes = wants_mattes ? mattes_of(world_) : Mattes{};
   if (wants_mattes) context.mattes = &mattes;
   const LightGroups groups = light_groups(scene_);
+  check_visibility(scene_, *lights_, groups);
   if (groups.any() && traits(context.settings.kind).traces_paths && options.data_layers)
     context.light_groups = &groups;
   result.picture = make_picture(format_of(context));
