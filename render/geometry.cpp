@@ -104,41 +104,64 @@ static void check_not_entered(const Object& object, std::uint32_t outer, const S
 
 // ---- What rays of each kind meet.
 
-/// Builds what rays of each kind meet of `geometries`, whose masks have the bits of Object::visible_to and
-/// whose structure is `all`. `child_seen_by` finds what they meet of a structure inside; null: all.
+/// Bits of Geometry::mask: for each tree of a SeenBy whether the geometry is in it; and that a structure
+/// inside is in the trees of catchers as in the others.
+constexpr std::uint32_t kBareRays = std::uint32_t{kAllRays} << kRayKinds, kWholeInside = 1u << 31;
+
+/// Builds what rays of each kind meet of `geometries`, whose masks have such bits; `trees`: of how many
+/// kinds. `child_seen_by` finds what they meet of a structure inside; null: all.
 template <class Find>
-static SeenBy build_seen_by(const std::vector<Geometry>& geometries, const Find& child_seen_by,
-                            const BuildOptions& options) {
+static SeenBy build_seen_by(const std::vector<Geometry>& geometries, std::size_t trees,
+                            const Find& child_seen_by, const BuildOptions& options) {
   SeenBy seen;
-  // What stands for each child in the structure of each kind; a hidden geometry has the list itself.
-  std::array<std::vector<const void*>, kRayKinds> children;
-  for (std::size_t k = 0; k < kRayKinds; ++k) {
-    bool differs = false;
-    const std::uint32_t mask = std::uint32_t{1} << k;
-    std::vector<Geometry> shown = geometries;
-    const auto put = [&](std::shared_ptr<const Accel>& child) {
-      const SeenBy* const inner = child_seen_by(child.get());
-      if (inner != nullptr && (*inner)[k] != nullptr) child = (*inner)[k], differs = true;
-      children[k].push_back(child.get());
-    };
-    for (Geometry& g : shown) {
-      if (auto* const instance = std::get_if<InstanceGeometry>(&g.shape)) put(instance->child);
-      if (auto* const list = std::get_if<InstanceList>(&g.shape))
-        for (auto& child : list->children) put(child);
-      if ((g.mask & mask) == 0)
-        children[k].push_back(&geometries), differs = true;
+  const auto child_in = [&](std::size_t tree, const Geometry& g, const std::shared_ptr<const Accel>& child) {
+    const SeenBy* const inner = child_seen_by(child.get());
+    const bool whole = tree >= kRayKinds && (g.mask & kWholeInside) != 0;
+    const std::size_t k = whole ? tree - kRayKinds : tree;
+    return inner != nullptr && (*inner)[k] != nullptr ? (*inner)[k] : child;
+  };
+  // What stands in the tree for each geometry: nothing, a child, or the geometry.
+  std::array<std::vector<const void*>, std::tuple_size_v<SeenBy>> parts;
+  const auto parts_of = [&](std::size_t tree) {
+    std::vector<const void*> list;
+    for (const Geometry& g : geometries) {
+      const bool shown = (g.mask >> tree & 1) != 0;
+      if (const auto* const instances = std::get_if<InstanceList>(&g.shape))
+        for (const auto& child : instances->children) list.push_back(child_in(tree, g, child).get());
+      const auto* const instance = std::get_if<InstanceGeometry>(&g.shape);
+      if (shown && instance != nullptr)
+        list.push_back(child_in(tree, g, instance->child).get());
       else
-        children[k].push_back(nullptr);
+        list.push_back(shown ? &g : nullptr);
     }
-    if (!differs) continue;
-    const auto same = std::find(children.begin(), children.begin() + k, children[k]) - children.begin();
-    if (static_cast<std::size_t>(same) < k && seen[same] != nullptr) {
-      seen[k] = seen[same];
+    return list;
+  };
+  std::vector<const void*> all;
+  for (const Geometry& g : geometries) {
+    if (const auto* const instances = std::get_if<InstanceList>(&g.shape))
+      for (const auto& child : instances->children) all.push_back(child.get());
+    const auto* const instance = std::get_if<InstanceGeometry>(&g.shape);
+    all.push_back(instance != nullptr ? static_cast<const void*>(instance->child.get()) : &g);
+  }
+  for (std::size_t tree = 0; tree < trees; ++tree) {
+    parts[tree] = parts_of(tree);
+    if (parts[tree] == all) continue;
+    const auto same =
+        static_cast<std::size_t>(std::find(parts.begin(), parts.begin() + tree, parts[tree]) - parts.begin());
+    if (same < tree) {
+      seen[tree] = seen[same];
       continue;
     }
-    BuildOptions of_kind = options;
-    of_kind.mask = mask;
-    seen[k] = build_accel(std::move(shown), of_kind);
+    std::vector<Geometry> shown = geometries;
+    for (Geometry& g : shown) {
+      if (auto* const instance = std::get_if<InstanceGeometry>(&g.shape))
+        instance->child = child_in(tree, g, instance->child);
+      if (auto* const list = std::get_if<InstanceList>(&g.shape))
+        for (auto& child : list->children) child = child_in(tree, g, child);
+    }
+    BuildOptions of_tree = options;
+    of_tree.mask = std::uint32_t{1} << tree;
+    seen[tree] = build_accel(std::move(shown), of_tree);
   }
   return seen;
 }
@@ -147,7 +170,17 @@ static bool hides(const SeenBy& seen) {
   return std::ranges::any_of(seen, [](const auto& accel) { return accel != nullptr; });
 }
 
-bool hides_objects(const World& world) { return hides(world.seen_by); }
+bool hides_objects(const World& world) {
+  return std::any_of(world.seen_by.begin(), world.seen_by.begin() + kRayKinds,
+                     [](const auto& accel) { return accel != nullptr; });
+}
+
+World without_others(const World& world) {
+  World bare = world;
+  for (std::size_t k = 0; k < kRayKinds; ++k)
+    if (k != static_cast<std::size_t>(RayKind::camera)) bare.seen_by[k] = world.seen_by[kRayKinds + k];
+  return bare;
+}
 
 bool bounces_differ(const World& world) {
   return std::ranges::any_of(
@@ -177,10 +210,15 @@ namespace {
 class WorldBuilder {
  public:
   WorldBuilder(const Scene& scene, const BuildOptions& options)
-      : scene_(scene), options_(options), hides_objects_(hides_any(scene)) {}
+      : scene_(scene),
+        options_(options),
+        catches_(any_object(scene, [](const Object& object) { return object.shadow_catcher; })),
+        hides_objects_(catches_ ||
+                       any_object(scene, [](const Object& o) { return o.visible_to != kAllRays; })) {}
 
   World build() {
     world_.tracks_dielectrics = needs_dielectrics(scene_);
+    world_.has_catchers = catches_;
     set_light_lists();
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
@@ -197,12 +235,36 @@ class WorldBuilder {
   }
 
  private:
-  static bool hides_any(const Scene& scene) {
-    const auto is_hidden = [](const Object& object) { return object.visible_to != kAllRays; };
-    return std::ranges::any_of(scene.objects, is_hidden) ||
+  template <class Test>
+  static bool any_object(const Scene& scene, const Test& test) {
+    return std::ranges::any_of(scene.objects, test) ||
            std::ranges::any_of(scene.prototypes, [&](const Prototype& prototype) {
-             return std::ranges::any_of(prototype.objects, is_hidden);
+             return std::ranges::any_of(prototype.objects, test);
            });
+  }
+
+  std::uint32_t full_mask() const { return catches_ ? kAllRays | kBareRays : kAllRays; }
+
+  /// Whether the object gives light itself, or may, by what it shows.
+  bool may_glow(const Object& object) const {
+    const auto glowing = [&](std::uint32_t material) {
+      return material < scene_.materials.size() && glows(scene_.materials[material]);
+    };
+    if (const auto* const csg = std::get_if<CsgShape>(&object.shape))
+      return std::ranges::any_of(*csg->operands, [&](const Object& operand) { return may_glow(operand); });
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (object.material != kNoId || mesh == nullptr) return glowing(object.material);
+    return std::ranges::any_of(mesh->slot_materials, glowing);
+  }
+
+  /// Geometry::mask of the object.
+  std::uint32_t mask_of(const Object& object) const {
+    std::uint32_t mask = object.visible_to;
+    if (!catches_) return mask;
+    const bool stays = object.shadow_catcher || may_glow(object);
+    const bool instance = std::holds_alternative<InstanceShape>(object.shape);
+    if (stays || instance) mask |= mask << kRayKinds;
+    return stays && instance ? mask | kWholeInside : mask;
   }
 
   std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
@@ -218,7 +280,7 @@ class WorldBuilder {
       Geometry geometry;
       if (const std::size_t run = instances_from(objects, k); run >= kLeastInstanceList) {
         shown.push_back(next_object());
-        geometries.push_back({instance_list(objects, k, run), {}, kNoId});
+        geometries.push_back({instance_list(objects, k, run), {}, kNoId, full_mask()});
         instances += run;
         k += run - 1;
         continue;
@@ -226,7 +288,7 @@ class WorldBuilder {
       const std::uint32_t id = next_object();
       if (!make_geometry(object, geometry)) continue;
       // A hidden combination has a structure of its own, as hits would be numbered otherwise without it.
-      const bool wraps = geometry.mask != kAllRays && std::holds_alternative<CsgGeometry>(geometry.shape);
+      const bool wraps = geometry.mask != full_mask() && std::holds_alternative<CsgGeometry>(geometry.shape);
       if (wraps) geometry = own_structure(std::move(geometry), id);
       shown.push_back(wraps ? kNoId : id);
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
@@ -246,7 +308,7 @@ class WorldBuilder {
   /// An instance of a structure of the geometry alone, which shows object `id`.
   Geometry own_structure(Geometry geometry, std::uint32_t id) {
     Geometry instance;
-    instance.mask = std::exchange(geometry.mask, kAllRays);
+    instance.mask = std::exchange(geometry.mask, full_mask());
     instance.shape = InstanceGeometry{build_counted({std::move(geometry)}, {id}, 0)};
     return instance;
   }
@@ -268,7 +330,7 @@ class WorldBuilder {
         const auto found = seen_by_.find(child);
         return found != seen_by_.end() ? &found->second : nullptr;
       };
-      const SeenBy own = build_seen_by(seen, child_seen_by, options_);
+      const SeenBy own = build_seen_by(seen, catches_ ? 2 * kRayKinds : kRayKinds, child_seen_by, options_);
       count_seen_by(own);
       seen_by_.emplace(accel.get(), own);
     }
@@ -280,7 +342,7 @@ class WorldBuilder {
   }
 
   void count_seen_by(const SeenBy& seen) {
-    for (std::size_t k = 0; k < kRayKinds; ++k)
+    for (std::size_t k = 0; k < seen.size(); ++k)
       if (seen[k] != nullptr && std::find(seen.begin(), seen.begin() + k, seen[k]) == seen.begin() + k)
         world_.bvh_bytes += stats(*seen[k]).bytes();
   }
@@ -292,13 +354,13 @@ class WorldBuilder {
     Geometry geometry;
     const std::uint32_t id = next_object();
     if (!make_geometry(unmoved, geometry)) return;
-    geometry.mask = kAllRays;
+    geometry.mask = full_mask();
     if (const auto* instance = std::get_if<InstanceGeometry>(&geometry.shape))
-      world_.moving.push_back({instance->child, object.motion, geometry.user, id, object.visible_to,
+      world_.moving.push_back({instance->child, object.motion, geometry.user, id, mask_of(object),
                                seen_by_[instance->child.get()]});
     else
       world_.moving.push_back(
-          {build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId, object.visible_to});
+          {build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId, mask_of(object)});
   }
 
   static bool is_bent(const Object& object) {
@@ -312,7 +374,7 @@ class WorldBuilder {
     const auto& mesh = std::get<MeshShape>(object.shape);
     add_object(object, id).slots = mesh.slot_materials;
     MovingObject moving;
-    moving.motion = object.motion, moving.visible_to = object.visible_to;
+    moving.motion = object.motion, moving.mask = mask_of(object);
     if (moving.motion == nullptr && !object.transform.is_identity()) {
       Motion still;
       still.factors.push_back({{0, object.transform}});
@@ -326,13 +388,20 @@ class WorldBuilder {
     world_.moving.push_back(std::move(moving));
   }
 
+  /// Whether rays of some kind do not meet all of a prototype. Then paths through lists of its instances
+  /// might be numbered otherwise.
+  bool differs(std::uint32_t prototype) const {
+    const auto found = seen_by_.find(prototypes_[prototype].get());
+    return found != seen_by_.end() && hides(found->second);
+  }
+
   /// Number of instances in a row from object `first` on.
   std::size_t instances_from(const std::vector<Object>& objects, std::size_t first) const {
     std::size_t end = first;
     while (end < objects.size()) {
       const auto* instance = std::get_if<InstanceShape>(&objects[end].shape);
       if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion ||
-          objects[end].visible_to != kAllRays)
+          mask_of(objects[end]) != full_mask() || differs(instance->prototype))
         break;
       ++end;
     }
@@ -363,6 +432,7 @@ class WorldBuilder {
     ObjectMaterials& own = world_.objects.emplace_back();
     own.material = object.material, own.solid = solid(object, id), own.name = object.name;
     own.listed = object.listed, own.light_list = object.light_list;
+    own.shadow_catcher = object.shadow_catcher;
     return own;
   }
 
@@ -370,7 +440,7 @@ class WorldBuilder {
     const std::uint32_t id = next_object();
     add_object(object, id);
     geometry.transform = object.transform;
-    geometry.user = id, geometry.mask = object.visible_to;
+    geometry.user = id, geometry.mask = mask_of(object);
     if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;
     // Without a material of its own, an instance shows those of the objects inside; a combination always
     // does, as its operands have been given its material if they had none.
@@ -496,7 +566,8 @@ class WorldBuilder {
   StructureObjects structure_objects_;
   std::set<const TriangleMesh*> seen_;
   std::uint32_t combination_ = kNoId;                 ///< the object whose operands are being made
-  const bool hides_objects_;                          ///< some object is not seen by all rays
+  const bool catches_;                                ///< there are shadow catchers
+  const bool hides_objects_;                          ///< some object is not in all trees of a SeenBy
   std::unordered_map<const Accel*, SeenBy> seen_by_;  ///< of the structures of lists
 };
 
@@ -594,21 +665,22 @@ Box tight_bounds(const World& world) {
 void pose(World& world, double time, const BuildOptions& options) {
   std::vector<Geometry> geometries;
   if (world.still != nullptr && stats(*world.still).items > 0)
-    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId, kAllRays});
+    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId, kAllRays | kBareRays});
   bool hides_any = hides(world.still_seen_by);
   for (MovingObject& object : world.moving) {
     if (object.bent != nullptr) bend(world, object, time, options);
     geometries.push_back({InstanceGeometry{object.shape},
                           object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user,
-                          object.visible_to});
-    hides_any = hides_any || object.visible_to != kAllRays || hides(object.seen_by);
+                          object.mask});
+    hides_any = hides_any || object.mask != kAllRays || hides(object.seen_by);
   }
   const auto child_seen_by = [&](const Accel* child) -> const SeenBy* {
     if (child == world.still.get()) return &world.still_seen_by;
     const auto found = std::ranges::find(world.moving, child, [](const auto& m) { return m.shape.get(); });
     return found != world.moving.end() ? &found->seen_by : nullptr;
   };
-  world.seen_by = hides_any ? build_seen_by(geometries, child_seen_by, options) : SeenBy{};
+  const std::size_t trees = world.has_catchers ? 2 * kRayKinds : kRayKinds;
+  world.seen_by = hides_any ? build_seen_by(geometries, trees, child_seen_by, options) : SeenBy{};
   world.accel = build_accel(std::move(geometries), options);
   world.bounds = bounds(*world.accel);
 }
@@ -652,6 +724,16 @@ std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t use
     return true;
   });
   return whole;
+}
+
+bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user) {
+  bool found = user < world.objects.size() && world.objects[user].shadow_catcher;
+  const auto look = [&](std::uint32_t number, bool) {
+    return found = found || world.objects[number].shadow_catcher;
+  };
+  if (found) return true;
+  if (const std::uint32_t inner = visit_objects_around(world, hit, look); inner != kNoId) look(inner, false);
+  return found;
 }
 
 std::uint16_t find_light_lists(const World& world, const Hit& hit, std::uint32_t user) {

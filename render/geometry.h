@@ -46,6 +46,7 @@ struct ObjectMaterials {
   std::shared_ptr<const StrokeParts> strokes{};  ///< if the object is points and lines
   std::uint16_t listed = 0;                      ///< as in Object
   std::uint32_t light_list = kNoId;              ///< as in Object
+  bool shadow_catcher = false;                   ///< as in Object
 };
 
 /// The object that each geometry of a structure shows; of a list of instances the first, which the others
@@ -53,17 +54,18 @@ struct ObjectMaterials {
 using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint32_t>>;
 
 /// What rays of each kind meet of a structure, numbered by RayKind: the same structure without some objects,
-/// with hits of the same numbers. Null: all of it.
-using SeenBy = std::array<std::shared_ptr<const Accel>, kRayKinds>;
+/// with hits of the same numbers. Null: all of it. Behind these, if there are shadow catchers, the same of
+/// catchers and of what glows alone.
+using SeenBy = std::array<std::shared_ptr<const Accel>, 2 * kRayKinds>;
 
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
-  MotionPointer motion;                ///< null: it stands still, but is bent
-  std::uint32_t user = kNoId;          ///< of the instance, as in Geometry; of what is bent, the object
-  std::uint32_t instance = kNoId;      ///< the object, if it is an instance
-  std::uint8_t visible_to = kAllRays;  ///< as in Object
-  SeenBy seen_by{};                    ///< of `shape`
+  MotionPointer motion;            ///< null: it stands still, but is bent
+  std::uint32_t user = kNoId;      ///< of the instance, as in Geometry; of what is bent, the object
+  std::uint32_t instance = kNoId;  ///< the object, if it is an instance
+  std::uint32_t mask = kAllRays;   ///< Geometry::mask of the instance
+  SeenBy seen_by{};                ///< of `shape`
   // Of a mesh that is bent, of which `shape` and `mesh` are those at a moment.
   std::shared_ptr<const MeshShape> bent{};
   std::shared_ptr<const TriangleMesh> mesh{};
@@ -87,6 +89,7 @@ struct World {
   bool has_enclosing_solids = false;  ///< there are any that they must know of
   bool has_holes = false;             ///< some material is not opaque everywhere, or is no surface at all
   bool has_clear = false;             ///< some material is transparent
+  bool has_catchers = false;          ///< there are shadow catchers
   bool has_light_lists = false;       ///< some light is for some objects only
   std::uint16_t lists_of_others = 0;  ///< bit i: LightList::lights_others of list i
 
@@ -135,6 +138,12 @@ bool hides_objects(const World& world);
 bool bounces_differ(const World& world);
 /// Whether shadow rays meet other objects than those of some kind of bounce.
 bool shadows_differ(const World& world);
+
+/// The world in which rays other than those of the camera meet only shadow catchers and what glows.
+World without_others(const World& world);
+/// Whether the object at a hit, or an instance or a combination around it, is a shadow catcher. `user` is
+/// that of the hit's surface interaction.
+bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user);
 
 /// Which lists of lights light the object at a hit, as LightPoint::lists: lists that name it, or an instance
 /// or a combination around it, and those of LightList::lights_others that do not. `user` is that of the hit's

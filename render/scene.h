@@ -422,6 +422,9 @@ struct Object {
   /// The kinds of rays that meet it, by bit_of(); of what an instance shows, those that both state. Operands
   /// of combinations must have kAllRays.
   std::uint8_t visible_to = kAllRays;
+  /// Where the camera sees it, the picture shows only how other objects change its light, see write_tile().
+  /// All that an instance shows is one if either states it. Not of operands of combinations.
+  bool shadow_catcher = false;
   /// Bit i: it is on Scene::light_lists[i], and so is all that it shows.
   std::uint16_t listed = 0;
   /// The list of the light that its material emits, as LightTraits::list.

@@ -24,6 +24,7 @@ struct Surroundings {
   Motion motion;            ///< its value at time 0 is `transform`
   std::uint8_t visible_to = kAllRays;
   std::uint32_t light_list = kNoId;
+  bool shadow_catcher = false;
 };
 
 std::string visible_to_schema(Schema& schema) {
@@ -44,6 +45,7 @@ constexpr SchemaRow kObjectKeys[] = {
      [](Schema& schema) { return schema_of(schema, kAnyNumber, MotionPointer{}); }},
     {"name", "for mattes and lights; no two objects have the same", [](Schema&) { return Schema::text(); }},
     {"visible_to", "the rays that meet it; all if left out", visible_to_schema},
+    {"shadow_catcher", "the camera sees only the shadows on it", [](Schema&) { return Schema::boolean(); }},
     {"lights_only", "of what glows: the objects that it lights", light_list_schema},
     {"lights_except", "of what glows: the objects that it does not light", light_list_schema}};
 
@@ -146,7 +148,8 @@ class ObjectReader {
                        outer.is_dropped,
                        outer.motion,
                        outer.visible_to,
-                       is_instance ? kNoId : outer.light_list};
+                       is_instance ? kNoId : outer.light_list,
+                       outer.shadow_catcher};
     if (const YamlNode* material = fields["material"])
       attempt(*material, [&] { inner.material = read_material(load_, *material); });
     if (const YamlNode* transform = fields["transform"])
@@ -186,6 +189,12 @@ class ObjectReader {
         read_value(load_, *node, kAnyNumber, set);
         inner.visible_to &= kinds;
       });
+    if (const YamlNode* node = fields["shadow_catcher"])
+      attempt(*node, [&] {
+        if (is_operand_)
+          throw Error(node->where(), "a combination is a shadow catcher as a whole; expected the key there");
+        inner.shadow_catcher |= load_.values.boolean(*node);
+      });
     const auto read_list = [&](const YamlNode* node, bool lights_others) {
       if (node == nullptr) return;
       attempt(*node, [&] {
@@ -212,7 +221,7 @@ class ObjectReader {
     object.shape = std::move(*shape);
     object.name = inner.name;
     object.material = inner.material, object.visible_to = inner.visible_to;
-    object.light_list = inner.light_list;
+    object.light_list = inner.light_list, object.shadow_catcher = inner.shadow_catcher;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
     for (const MeshShape& each : strokes) {

@@ -206,12 +206,7 @@ void find_hits_by_kind(const RenderContext& context, Wavefront& wavefront) {
     }
     hits.resize_uninitialized(which.size());
     closest_hit(*accel, rays.span(), hits.span(), context.isa);
-    HitBatch& all = wavefront.hits;
-    for (std::size_t k = 0; k < which.size(); ++k) {
-      const std::uint32_t i = which[k];
-      all.t[i] = hits.t[k], all.u[i] = hits.u[k], all.v[i] = hits.v[k];
-      all.item[i] = hits.item[k], all.instance[i] = hits.instance[k];
-    }
+    for (std::size_t k = 0; k < which.size(); ++k) wavefront.hits.span().set(which[k], hits[k]);
   }
 }
 
@@ -396,6 +391,43 @@ bool meets_anything(const Wavefront& wavefront) {
   return false;
 }
 
+/// Adds the samples that stand for what shadow catchers show, with the places and random numbers of the
+/// others.
+void add_caught_samples(SampleBatch& samples) {
+  const std::size_t count = samples.size();
+  const auto twice = [&](auto& column) {
+    if (column.size() == 0) return;
+    column.resize_uninitialized(2 * count);
+    std::copy_n(column.data(), count, column.data() + count);
+  };
+  twice(samples.pixel), twice(samples.number), twice(samples.key), twice(samples.pattern);
+  twice(samples.offset), twice(samples.first), twice(samples.spawned), twice(samples.alpha);
+  samples.color.resize_uninitialized(2 * count), samples.behind.resize_uninitialized(2 * count);
+  samples.behind.fill(2 * count, {0, 0, 0});
+}
+
+/// Has rays of the camera, as far as they come, belong to the second half of the samples where they meet a
+/// shadow catcher. Without other objects only these count: the others end here, as far as they can.
+void catch_rays(const RenderContext& context, Wavefront& wavefront) {
+  const World& world = *context.world;
+  SampleBatch& samples = wavefront.samples;
+  for (std::size_t i = 0; i < wavefront.rays.size(); ++i) {
+    if (wavefront.rays.from_camera[i] == 0) continue;
+    std::uint32_t& sample = wavefront.rays.sample[i];
+    sample %= samples.caught();
+    if (wavefront.hits.item[i] == kNoId) continue;
+    const Hit hit = wavefront.hits[i];
+    if (is_shadow_catcher(world, hit, identify(*world.accel, hit).user)) {
+      sample += samples.caught();
+      const Color light =
+          context.background + context.sampled->set().environment_radiance(wavefront.rays.rays[i].direction);
+      samples.behind.set(sample, light);
+    } else if (context.without_others == nullptr && !world.has_holes) {
+      wavefront.hits.item[i] = kNoId;
+    }
+  }
+}
+
 /// Fills the columns whose value is the same for all camera rays.
 void fill_camera_rays(Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
@@ -448,6 +480,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
       const bool may_be_empty = !context.opaque_background && !context.tracks_dielectrics;
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
+      if (context.catches) add_caught_samples(wavefront.samples);
       fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);
       start_layers(context, wavefront);
@@ -457,6 +490,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     }
     if (context.shadows_decide) find_met_lights(context, wavefront);
     if (context.tracks_dielectrics) pass_media(context, wavefront);
+    if (context.catches) catch_rays(context, wavefront);
     start_level(context, wavefront);
     if (context.shadows_decide) add_met_lights(context, wavefront);
     cover_background(context, wavefront);

@@ -39,8 +39,12 @@ struct SampleBatch {
   Column<std::uint16_t> spawned;     ///< number of rays that Whitted's integrator queued for the next bounce
   Column<FirstHit> first;            ///< empty unless data layers are wanted
   std::vector<ColorColumn> grouped;  ///< per light group its part of `color`; empty unless wanted
+  ColorColumn behind;                ///< of RenderContext::catches: the background that a catcher hides
 
   std::size_t size() const { return pixel.size(); }
+  /// Where the light of shadow catchers is kept apart, the samples of the second half stand for what those of
+  /// the first see of catchers: this is the number of the first one.
+  std::uint32_t caught() const { return static_cast<std::uint32_t>(size() / 2); }
   void resize_uninitialized(std::size_t n, bool data_layers) {
     pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
     offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
