@@ -260,6 +260,11 @@ class WorldBuilder {
   /// Geometry::mask of the object.
   std::uint32_t mask_of(const Object& object) const {
     std::uint32_t mask = object.visible_to;
+    // Without media there are no rays of volumes, so a tree for them is that of others.
+    if (!world_.tracks_dielectrics) {
+      const bool diffuse = (mask & bit_of(RayKind::diffuse)) != 0;
+      mask = diffuse ? mask | bit_of(RayKind::volume) : mask & ~std::uint32_t{bit_of(RayKind::volume)};
+    }
     if (!catches_) return mask;
     const bool stays = object.shadow_catcher || may_glow(object);
     const bool instance = std::holds_alternative<InstanceShape>(object.shape);

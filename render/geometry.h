@@ -38,15 +38,15 @@ std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time)
 /// What an object of the scene contributes to shading its hits; indexed by SurfaceInteraction::user.
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
+  std::uint16_t listed = 0;          ///< as in Object
+  bool shadow_catcher = false;       ///< as in Object
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
   /// The object whose inside its surfaces bound: itself, or the combination that it is an operand of. kNoId
   /// if it has no inside, or if paths need not know.
   std::uint32_t solid = kNoId;
+  std::uint32_t light_list = kNoId;  ///< as in Object
   std::string name;  ///< of the object; that of the combination for an operand without one; may be empty
   std::shared_ptr<const StrokeParts> strokes{};  ///< if the object is points and lines
-  std::uint16_t listed = 0;                      ///< as in Object
-  std::uint32_t light_list = kNoId;              ///< as in Object
-  bool shadow_catcher = false;                   ///< as in Object
 };
 
 /// The object that each geometry of a structure shows; of a list of instances the first, which the others

@@ -385,7 +385,7 @@ static std::string object_schema(Schema& schema) {
     visit_surfaces(shapes);
     map.add_one_of(kOtherShapes);
     for (const SchemaRow& other : kObjectKeys) map.add(other.key, other.meaning, other.schema(schema));
-    map.not_both("transform", "motion");
+    map.not_both("transform", "motion"), map.not_both("lights_only", "lights_except");
     return map.text();
   });
 }

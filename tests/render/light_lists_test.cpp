@@ -108,7 +108,6 @@ Picture lit(const Lamp& lamp, Scene scene, For whom) {
   return run(scene).picture;
 }
 
-/// Of the pixels, how many show the ball, and how many what is around it, seen alone.
 TEST(LightLists, PartsAddUpToTheWhole) {
   for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path})
     for (const std::uint32_t depth : {0u, 3u})
@@ -118,20 +117,21 @@ TEST(LightLists, PartsAddUpToTheWhole) {
         scene.integrator.light_samples = kind == IntegratorKind::whitted ? 4 : 0;
         const Picture whole = lit(lamp, scene, For::all), ball = lit(lamp, scene, For::ball_only),
                       others = lit(lamp, scene, For::all_but_ball);
+        const Picture things_alone = run(scene).picture;
         const bool environment = std::string(lamp.name).starts_with("environment") ||
                                  (kind == IntegratorKind::path && std::string(lamp.name) == "sun");
         double of_ball = 0, of_others = 0;
         for (std::uint32_t y = 0; y < whole.height; ++y)
           for (std::uint32_t x = 0; x < whole.width; ++x) {
             // Rays of the camera see the environment in both.
-            if (environment && value(whole, "Albedo.B", x, y) == 0) continue;
+            if (environment && value(things_alone, "A", x, y) < 1) continue;
             const Color a = color(ball, x, y), b = color(others, x, y), c = color(whole, x, y);
             for (int k = 0; k < 3; ++k)
               EXPECT_NEAR(a[k] + b[k], c[k], 1e-5f + 1e-4f * c[k])
                   << lamp.name << depth << ' ' << x << ' ' << y;
             of_ball += static_cast<double>(a.x), of_others += static_cast<double>(b.x);
           }
-        EXPECT_GT(of_ball, 0.5) << lamp.name;
+        EXPECT_GT(of_ball, 0.2) << lamp.name;
         EXPECT_GT(of_others, 0.5) << lamp.name;
       }
 }
@@ -196,7 +196,7 @@ TEST(LightLists, MirrorsShowOnlyTheLightsThatAreForThem) {
       EXPECT_NEAR(value(seen, "R", x, y), 1, 1e-4);
       EXPECT_NEAR(value(unseen, "R", x, y), 1 - cover, 1e-4);
     }
-  EXPECT_GT(on_ball, 5u);
+  EXPECT_GT(on_ball, 3u);
 }
 
 TEST(LightLists, InstancesAndCombinationsAreLitWithWhatTheyShow) {
@@ -226,7 +226,7 @@ TEST(LightLists, InstancesAndCombinationsAreLitWithWhatTheyShow) {
         return sum;
       };
       EXPECT_EQ(light(0, 0), 0);
-      EXPECT_GT(light(1, 0), 1);
+      EXPECT_GT(light(1, 0), 0.5);
       if (!combination) {
         EXPECT_EQ(light(0, 1), light(1, 0));
       }

@@ -1,5 +1,5 @@
-/// \file Shadow catchers. What they show is compared with two pictures: with all objects, and without those that
-/// throw shadows. All three have the same samples.
+/// \file Shadow catchers. What they show is compared with two pictures: with all objects, and without those
+/// that throw shadows. All three have the same samples.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Scene floor_scene(IntegratorKind kind) {
   Scene scene = bare_scene(16);
   scene.integrator.kind = kind, scene.integrator.samples = 16, scene.integrator.depth = 3;
   scene.integrator.light_samples = kind == IntegratorKind::whitted ? 4 : 0;
-  scene.camera.from = {0, 3, 5}, scene.camera.at = {0, 0.4, 0}, scene.camera.fov = 50;
+  scene.camera.from = {0, 3, 3}, scene.camera.at = {0, 0.3, 0}, scene.camera.fov = 50;
   add_object(scene, PolygonShape{{{-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}}},
              add_material(scene, diffuse({0.5f, 0.6f, 0.7f})));
   scene.objects[0].shadow_catcher = true;
@@ -67,7 +67,8 @@ TEST(ShadowCatcher, ShowsTheRatioOfTwoPictures) {
           ++solid;
         }
         if (covered > 0) continue;
-        const double with = mean_of_channels(color(all, x, y)), without = mean_of_channels(color(empty, x, y));
+        const double with = mean_of_channels(color(all, x, y)),
+                     without = mean_of_channels(color(empty, x, y));
         EXPECT_EQ(color(caught, x, y), (Color{0, 0, 0}));
         EXPECT_NEAR(value(caught, "A", x, y), std::max(0.0, 1 - with / without), 1e-5) << x << ' ' << y;
         for (const char* channel : {"R", "G", "B"})
