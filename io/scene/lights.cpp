@@ -36,7 +36,7 @@ void add_light(SceneLoad& load, Light light, LightTraits traits) {
     traits.motion = nullptr;
   }
   load.scene.lights.push_back(std::move(light));
-  if (!traits.motion && traits.group.empty()) return;
+  if (!traits.motion && traits.group.empty() && traits.list == kNoId) return;
   load.scene.light_traits.resize(load.scene.lights.size());
   load.scene.light_traits.back() = std::move(traits);
 }

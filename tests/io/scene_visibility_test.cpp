@@ -54,10 +54,11 @@ TEST(SceneVisibility, ListsNameObjectsGroupsAndWhatPrototypesHold) {
   ASSERT_EQ(scene.light_lists.size(), 3u);
   EXPECT_FALSE(scene.light_lists[0].lights_others);
   EXPECT_TRUE(scene.light_lists[1].lights_others);
+  // A last light without traits has none.
+  ASSERT_EQ(scene.light_traits.size(), 3u);
   EXPECT_EQ(scene.light_traits[0].list, 0u);
   EXPECT_EQ(scene.light_traits[1].list, 1u);
   EXPECT_EQ(scene.light_traits[2].list, 0u);
-  EXPECT_EQ(scene.light_traits[3].list, kNoId);
   EXPECT_EQ(scene.prototypes[0].objects[0].listed, 1);
   EXPECT_EQ(scene.prototypes[0].objects[1].listed, 0);
   ASSERT_EQ(scene.objects.size(), 5u);
