@@ -163,11 +163,12 @@ class ObjectReader {
       });
     read_visibility(fields, inner);
     if (!key) return;
+    const std::string own_name = object.name;
     if (is_group)
       for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
     else
       add_shape(*key, *value, object, inner);
-    if (fields["name"] && !object.name.empty()) note_name(object.name, first);
+    if (!own_name.empty()) note_name(own_name, first);
   }
 
   /// What `name` stands for: the objects from `first` on.

@@ -83,7 +83,7 @@ TEST(SceneVisibility, WrongKeysAreErrors) {
     many += "  - point: {position: [0, 0, 0], only: [a" + std::to_string(i) + "]}\n";
   expect_errors({
       {"objects: [{sphere: {}, visible_to: [camera, shadows]}]\n",
-       "scene.yaml:2:44: unknown value 'shadows'"},
+       "scene.yaml:2:45: expected camera or diffuse"},
       {"objects: [{sphere: {}, visible_to: camera}]\n", "scene.yaml:2:36: expected a list"},
       {"objects: [{union: [{sphere: {}, visible_to: [camera]}]}]\n",
        "scene.yaml:2:45: what is in a combination is visible to all rays that meet the combination"},
@@ -99,7 +99,7 @@ TEST(SceneVisibility, WrongKeysAreErrors) {
        "scene.yaml:3:22: without a material of its own an instance glows as its prototype does"},
       {"objects: [{sphere: {}, lights_only: [], lights_except: []}]\n",
        "scene.yaml:2:56: expected 'lights_only' or 'lights_except', not both"},
-      {many, "scene.yaml:19:48: there are more than 16 different lists"},
+      {many, "scene.yaml:19:40: there are more than 16 different lists"},
   });
 }
 
