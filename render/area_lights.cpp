@@ -113,6 +113,7 @@ LightSource light_at(const SceneLights& lights, const TextureSampler* textures,
       },
       lights.set().emitters()[chosen.emitter]);
   light.glows = light.falloff = true;
+  light.list = lights.set().list(chosen.emitter);
   light.lift = 0x1p-20f * max_component(abs(light.place));
   return light;
 }

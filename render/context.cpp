@@ -72,8 +72,11 @@ std::uint32_t first_samples(const IntegratorSettings& settings) {
 
 std::vector<LightSource> light_sources(const Scene& scene) {
   std::vector<LightSource> sources;
-  for (const Light& light : scene.lights)
-    if (lights_whitted(light)) sources.push_back(light_source(light));
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (!lights_whitted(scene.lights[i])) continue;
+    sources.push_back(light_source(scene.lights[i]));
+    sources.back().list = light_list_number(list_of_light(scene, i));
+  }
   return sources;
 }
 
@@ -97,6 +100,13 @@ static std::vector<Vec3d> interiors(const Scene& scene, const World& world) {
   return extinctions;
 }
 
+void set_visibility(RenderContext& context) {
+  const World& world = *context.world;
+  context.hides_objects = hides_objects(world), context.bounces_differ = bounces_differ(world);
+  context.shadows_decide = traits(context.settings.kind).traces_paths && shadows_differ(world);
+  context.catches = world.has_catchers && traits(context.settings.kind).bounces();
+}
+
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
                            const TextureSampler* textures, Isa isa) {
   RenderContext c;
@@ -116,6 +126,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.area_lights = area_lights(lights, textures, c.settings);
   c.interiors = interiors(scene, world);
   c.tracks_dielectrics = world.tracks_dielectrics;
+  set_visibility(c);
   if (c.tracks_dielectrics) {
     for (const Medium& medium : scene.media) c.media.emplace_back(medium);
     c.outer_medium = scene.medium;
@@ -128,7 +139,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
-  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics;
+  // Shadow catchers count what they cover.
+  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches;
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;

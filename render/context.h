@@ -43,7 +43,14 @@ struct RenderContext {
   bool some_only_send_rays = false;  ///< some of `materials`, see only_sends_rays(); for Whitted's model
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
-  bool tracks_dielectrics = false;     ///< rays must know in which solids they are, see dielectric_stack.h
+  bool tracks_dielectrics = false;  ///< rays must know in which solids they are, see dielectric_stack.h
+  bool hides_objects = false;       ///< rays of some kind do not meet all objects, see World::seen_by
+  bool bounces_differ = false;      ///< those of bounces of different kinds meet different objects
+  /// Path tracing where shadow rays meet other objects than bounces, see transport/met_lights.h.
+  bool shadows_decide = false;
+  bool catches = false;  ///< the light of shadow catchers is kept apart, see SampleBatch::caught()
+  /// Where it is: the same, but that rays other than those of the camera meet only catchers and what glows.
+  const RenderContext* without_others = nullptr;
   std::vector<MediumTracker> media;    ///< numbered as in Scene::media
   std::uint32_t outer_medium = kNoId;  ///< the medium outside of all solids
   /// Extinction of homogeneous interiors, numbered as World::materials, for Whitted's model; empty if no
@@ -78,6 +85,9 @@ void enclose_camera(const Camera& camera, RenderContext& context);
 
 /// ShadingMaterial::exponent of a highlight of that weight and power.
 std::int16_t highlight_exponent(float specular, float phong);
+
+/// Sets what of a context depends on which objects rays meet in its world.
+void set_visibility(RenderContext& context);
 
 /// `scene` has its camera and lights filled in. `scene`, `world`, `lights` and `textures` must outlive the
 /// result.

@@ -88,6 +88,14 @@ std::uint32_t medium_in(const World& world, const DielectricStack& dielectrics, 
   return e != nullptr ? material_of(world, *e).interior : outside;
 }
 
+std::uint16_t light_lists_in(const World& world, const DielectricStack& dielectrics) {
+  if (!world.has_light_lists) return 0xffff;
+  const StackedDielectric* e = filling(world, dielectrics);
+  const unsigned listed =
+      e != nullptr && e->solid < world.objects.size() ? world.objects[e->solid].listed : 0u;
+  return static_cast<std::uint16_t>(listed ^ world.lists_of_others);
+}
+
 DielectricStack dielectrics_behind(const RenderContext& context, const DielectricStack& before,
                                    const Ray& ray, std::span<const Hit> hits) {
   const World& world = *context.world;

@@ -65,6 +65,9 @@ Boundary boundary_at(const World& world, const DielectricStack& before, const Su
 /// The medium in the solids given, an index into Scene::media; `outside` if there are none.
 std::uint32_t medium_in(const World& world, const DielectricStack& dielectrics, std::uint32_t outside);
 
+/// Which lists of lights light the medium there, as LightPoint::lists: that of the solid that it fills.
+std::uint16_t light_lists_in(const World& world, const DielectricStack& dielectrics);
+
 /// The solids that a point lies in, by the crossings of a ray from there with all surfaces. Those that it
 /// leaves first come last.
 DielectricStack dielectrics_at(const RenderContext& context, const Vec3f& point);

@@ -84,6 +84,114 @@ static bool is_entered(const Object& object, const Scene& scene) {
          has_inside(object, scene);
 }
 
+/// Throws Error if light enters the object, or what it shows, of this outer material.
+static void check_not_entered(const Object& object, std::uint32_t outer, const Scene& scene,
+                              const Location& where) {
+  const std::uint32_t material = outer != kNoId ? outer : object.material;
+  const auto check_all = [&](const std::vector<Object>& objects) {
+    for (const Object& inner : objects) check_not_entered(inner, material, scene, where);
+  };
+  if (const auto* csg = std::get_if<CsgShape>(&object.shape)) return check_all(*csg->operands);
+  const auto* const instance = std::get_if<InstanceShape>(&object.shape);
+  if (instance != nullptr && instance->prototype < scene.prototypes.size())
+    return check_all(scene.prototypes[instance->prototype].objects);
+  const auto lets_in = [&](std::uint32_t number) { return lets_light_in(scene, number); };
+  const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+  if (material != kNoId || mesh == nullptr ? lets_in(material)
+                                           : std::ranges::any_of(mesh->slot_materials, lets_in))
+    throw Error(where, "with media or priorities, what light enters must be visible to all rays");
+}
+
+// ---- What rays of each kind meet.
+
+/// Bits of Geometry::mask: for each tree of a SeenBy whether the geometry is in it; and that a structure
+/// inside is in the trees of catchers as in the others.
+constexpr std::uint32_t kBareRays = std::uint32_t{kAllRays} << kRayKinds, kWholeInside = 1u << 31;
+
+/// Builds what rays of each kind meet of `geometries`, whose masks have such bits; `trees`: of how many
+/// kinds. `child_seen_by` finds what they meet of a structure inside; null: all.
+template <class Find>
+static SeenBy build_seen_by(const std::vector<Geometry>& geometries, std::size_t trees,
+                            const Find& child_seen_by, const BuildOptions& options) {
+  SeenBy seen;
+  const auto child_in = [&](std::size_t tree, const Geometry& g, const std::shared_ptr<const Accel>& child) {
+    const SeenBy* const inner = child_seen_by(child.get());
+    const bool whole = tree >= kRayKinds && (g.mask & kWholeInside) != 0;
+    const std::size_t k = whole ? tree - kRayKinds : tree;
+    return inner != nullptr && (*inner)[k] != nullptr ? (*inner)[k] : child;
+  };
+  // What stands in the tree for each geometry: nothing, a child, or the geometry.
+  std::array<std::vector<const void*>, std::tuple_size_v<SeenBy>> parts;
+  const auto parts_of = [&](std::size_t tree) {
+    std::vector<const void*> list;
+    for (const Geometry& g : geometries) {
+      const bool shown = (g.mask >> tree & 1) != 0;
+      if (const auto* const instances = std::get_if<InstanceList>(&g.shape))
+        for (const auto& child : instances->children) list.push_back(child_in(tree, g, child).get());
+      const auto* const instance = std::get_if<InstanceGeometry>(&g.shape);
+      if (shown && instance != nullptr)
+        list.push_back(child_in(tree, g, instance->child).get());
+      else
+        list.push_back(shown ? &g : nullptr);
+    }
+    return list;
+  };
+  std::vector<const void*> all;
+  for (const Geometry& g : geometries) {
+    if (const auto* const instances = std::get_if<InstanceList>(&g.shape))
+      for (const auto& child : instances->children) all.push_back(child.get());
+    const auto* const instance = std::get_if<InstanceGeometry>(&g.shape);
+    all.push_back(instance != nullptr ? static_cast<const void*>(instance->child.get()) : &g);
+  }
+  for (std::size_t tree = 0; tree < trees; ++tree) {
+    parts[tree] = parts_of(tree);
+    if (parts[tree] == all) continue;
+    const auto same =
+        static_cast<std::size_t>(std::find(parts.begin(), parts.begin() + tree, parts[tree]) - parts.begin());
+    if (same < tree) {
+      seen[tree] = seen[same];
+      continue;
+    }
+    std::vector<Geometry> shown = geometries;
+    for (Geometry& g : shown) {
+      if (auto* const instance = std::get_if<InstanceGeometry>(&g.shape))
+        instance->child = child_in(tree, g, instance->child);
+      if (auto* const list = std::get_if<InstanceList>(&g.shape))
+        for (auto& child : list->children) child = child_in(tree, g, child);
+    }
+    BuildOptions of_tree = options;
+    of_tree.mask = std::uint32_t{1} << tree;
+    seen[tree] = build_accel(std::move(shown), of_tree);
+  }
+  return seen;
+}
+
+static bool hides(const SeenBy& seen) {
+  return std::ranges::any_of(seen, [](const auto& accel) { return accel != nullptr; });
+}
+
+bool hides_objects(const World& world) {
+  return std::any_of(world.seen_by.begin(), world.seen_by.begin() + kRayKinds,
+                     [](const auto& accel) { return accel != nullptr; });
+}
+
+World without_others(const World& world) {
+  World bare = world;
+  for (std::size_t k = 0; k < kRayKinds; ++k)
+    if (k != static_cast<std::size_t>(RayKind::camera)) bare.seen_by[k] = world.seen_by[kRayKinds + k];
+  return bare;
+}
+
+bool bounces_differ(const World& world) {
+  return std::ranges::any_of(
+      kBounceKinds, [&](RayKind kind) { return &seen_by(world, kind) != &seen_by(world, RayKind::diffuse); });
+}
+
+bool shadows_differ(const World& world) {
+  return std::ranges::any_of(
+      kBounceKinds, [&](RayKind kind) { return &seen_by(world, kind) != &seen_by(world, RayKind::shadow); });
+}
+
 // ---- Geometries of objects.
 
 static void set_materials(const Scene& scene, World& world) {
@@ -101,15 +209,23 @@ namespace {
 /// Turns lists of objects into acceleration structures, one list after the other.
 class WorldBuilder {
  public:
-  WorldBuilder(const Scene& scene, const BuildOptions& options) : scene_(scene), options_(options) {}
+  WorldBuilder(const Scene& scene, const BuildOptions& options)
+      : scene_(scene),
+        options_(options),
+        catches_(any_object(scene, [](const Object& object) { return object.shadow_catcher; })),
+        hides_objects_(catches_ ||
+                       any_object(scene, [](const Object& o) { return o.visible_to != kAllRays; })) {}
 
   World build() {
     world_.tracks_dielectrics = needs_dielectrics(scene_);
+    world_.has_catchers = catches_;
+    set_light_lists();
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
+    world_.seen_by = seen_by_[world_.accel.get()];
     world_.bounds = bounds(*world_.accel);
     if (!world_.moving.empty()) {
-      world_.still = world_.accel;
+      world_.still = world_.accel, world_.still_seen_by = world_.seen_by;
       pose(world_, 0, options_);
     }
     world_.sah_cost = stats(*world_.accel).sah_cost;
@@ -119,6 +235,43 @@ class WorldBuilder {
   }
 
  private:
+  template <class Test>
+  static bool any_object(const Scene& scene, const Test& test) {
+    return std::ranges::any_of(scene.objects, test) ||
+           std::ranges::any_of(scene.prototypes, [&](const Prototype& prototype) {
+             return std::ranges::any_of(prototype.objects, test);
+           });
+  }
+
+  std::uint32_t full_mask() const { return catches_ ? kAllRays | kBareRays : kAllRays; }
+
+  /// Whether the object gives light itself, or may, by what it shows.
+  bool may_glow(const Object& object) const {
+    const auto glowing = [&](std::uint32_t material) {
+      return material < scene_.materials.size() && glows(scene_.materials[material]);
+    };
+    if (const auto* const csg = std::get_if<CsgShape>(&object.shape))
+      return std::ranges::any_of(*csg->operands, [&](const Object& operand) { return may_glow(operand); });
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (object.material != kNoId || mesh == nullptr) return glowing(object.material);
+    return std::ranges::any_of(mesh->slot_materials, glowing);
+  }
+
+  /// Geometry::mask of the object.
+  std::uint32_t mask_of(const Object& object) const {
+    std::uint32_t mask = object.visible_to;
+    // Without media there are no rays of volumes, so a tree for them is that of others.
+    if (!world_.tracks_dielectrics) {
+      const bool diffuse = (mask & bit_of(RayKind::diffuse)) != 0;
+      mask = diffuse ? mask | bit_of(RayKind::volume) : mask & ~std::uint32_t{bit_of(RayKind::volume)};
+    }
+    if (!catches_) return mask;
+    const bool stays = object.shadow_catcher || may_glow(object);
+    const bool instance = std::holds_alternative<InstanceShape>(object.shape);
+    if (stays || instance) mask |= mask << kRayKinds;
+    return stays && instance ? mask | kWholeInside : mask;
+  }
+
   std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
     std::vector<Geometry> geometries;
     std::vector<std::uint32_t> shown;  // as in StructureObjects
@@ -132,19 +285,37 @@ class WorldBuilder {
       Geometry geometry;
       if (const std::size_t run = instances_from(objects, k); run >= kLeastInstanceList) {
         shown.push_back(next_object());
-        geometries.push_back({instance_list(objects, k, run), {}, kNoId});
+        geometries.push_back({instance_list(objects, k, run), {}, kNoId, full_mask()});
         instances += run;
         k += run - 1;
         continue;
       }
       const std::uint32_t id = next_object();
       if (!make_geometry(object, geometry)) continue;
-      shown.push_back(id);
+      // A hidden combination has a structure of its own, as hits would be numbered otherwise without it.
+      const bool wraps = geometry.mask != full_mask() && std::holds_alternative<CsgGeometry>(geometry.shape);
+      if (wraps) geometry = own_structure(std::move(geometry), id);
+      shown.push_back(wraps ? kNoId : id);
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
       if (instance && object.transform.is_invertible()) ++instances;
       geometries.push_back(std::move(geometry));
     }
     return build_counted(std::move(geometries), std::move(shown), instances);
+  }
+
+  void set_light_lists() {
+    for (std::size_t i = 0; i < scene_.light_lists.size(); ++i)
+      if (scene_.light_lists[i].lights_others)
+        world_.lists_of_others = static_cast<std::uint16_t>(world_.lists_of_others | 1u << i);
+    world_.has_light_lists = !scene_.light_lists.empty();
+  }
+
+  /// An instance of a structure of the geometry alone, which shows object `id`.
+  Geometry own_structure(Geometry geometry, std::uint32_t id) {
+    Geometry instance;
+    instance.mask = std::exchange(geometry.mask, full_mask());
+    instance.shape = InstanceGeometry{build_counted({std::move(geometry)}, {id}, 0)};
+    return instance;
   }
 
   /// The number of the object that is added next.
@@ -154,13 +325,31 @@ class WorldBuilder {
   /// so many of its items are `instances`.
   std::shared_ptr<const Accel> build_counted(std::vector<Geometry> geometries,
                                              std::vector<std::uint32_t> shown, std::uint64_t instances) {
+    std::vector<Geometry> seen;
+    if (hides_objects_) seen = geometries;
     std::shared_ptr<const Accel> accel = build_accel(std::move(geometries), options_);
     structure_objects_.emplace(accel.get(), std::move(shown));
+    if (hides_objects_) {
+      // What rays of each kind meet of structures that have been built.
+      const auto child_seen_by = [this](const Accel* child) {
+        const auto found = seen_by_.find(child);
+        return found != seen_by_.end() ? &found->second : nullptr;
+      };
+      const SeenBy own = build_seen_by(seen, catches_ ? 2 * kRayKinds : kRayKinds, child_seen_by, options_);
+      count_seen_by(own);
+      seen_by_.emplace(accel.get(), own);
+    }
     const AccelStats s = stats(*accel);
     world_.triangles += s.triangles;
     world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
     world_.bvh_bytes += s.bytes();
     return accel;
+  }
+
+  void count_seen_by(const SeenBy& seen) {
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      if (seen[k] != nullptr && std::find(seen.begin(), seen.begin() + k, seen[k]) == seen.begin() + k)
+        world_.bvh_bytes += stats(*seen[k]).bytes();
   }
 
   void add_moving(const Object& object) {
@@ -170,10 +359,13 @@ class WorldBuilder {
     Geometry geometry;
     const std::uint32_t id = next_object();
     if (!make_geometry(unmoved, geometry)) return;
+    geometry.mask = full_mask();
     if (const auto* instance = std::get_if<InstanceGeometry>(&geometry.shape))
-      world_.moving.push_back({instance->child, object.motion, geometry.user, id});
+      world_.moving.push_back({instance->child, object.motion, geometry.user, id, mask_of(object),
+                               seen_by_[instance->child.get()]});
     else
-      world_.moving.push_back({build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId});
+      world_.moving.push_back(
+          {build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId, mask_of(object)});
   }
 
   static bool is_bent(const Object& object) {
@@ -185,9 +377,9 @@ class WorldBuilder {
   void add_bent(const Object& object) {
     const std::uint32_t id = next_object();
     const auto& mesh = std::get<MeshShape>(object.shape);
-    world_.objects.push_back({object.material, mesh.slot_materials, solid(object, id), object.name});
+    add_object(object, id).slots = mesh.slot_materials;
     MovingObject moving;
-    moving.motion = object.motion;
+    moving.motion = object.motion, moving.mask = mask_of(object);
     if (moving.motion == nullptr && !object.transform.is_identity()) {
       Motion still;
       still.factors.push_back({{0, object.transform}});
@@ -201,12 +393,21 @@ class WorldBuilder {
     world_.moving.push_back(std::move(moving));
   }
 
+  /// Whether rays of some kind do not meet all of a prototype. Then paths through lists of its instances
+  /// might be numbered otherwise.
+  bool differs(std::uint32_t prototype) const {
+    const auto found = seen_by_.find(prototypes_[prototype].get());
+    return found != seen_by_.end() && hides(found->second);
+  }
+
   /// Number of instances in a row from object `first` on.
   std::size_t instances_from(const std::vector<Object>& objects, std::size_t first) const {
     std::size_t end = first;
     while (end < objects.size()) {
       const auto* instance = std::get_if<InstanceShape>(&objects[end].shape);
-      if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion) break;
+      if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion ||
+          mask_of(objects[end]) != full_mask() || differs(instance->prototype))
+        break;
       ++end;
     }
     return end - first;
@@ -219,7 +420,7 @@ class WorldBuilder {
     for (std::size_t k = first; k < first + count; ++k) {
       const Object& object = objects[k];
       const std::uint32_t id = next_object();
-      world_.objects.push_back({object.material, {}, solid(object, id), object.name});
+      add_object(object, id);
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
           {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
@@ -229,11 +430,22 @@ class WorldBuilder {
     return list;
   }
 
+  /// Adds object number `id`.
+  ObjectMaterials& add_object(const Object& object, std::uint32_t id) {
+    if (object.visible_to != kAllRays && world_.tracks_dielectrics)
+      check_not_entered(object, kNoId, scene_, object.where);
+    ObjectMaterials& own = world_.objects.emplace_back();
+    own.material = object.material, own.solid = solid(object, id), own.name = object.name;
+    own.listed = object.listed, own.light_list = object.light_list;
+    own.shadow_catcher = object.shadow_catcher;
+    return own;
+  }
+
   bool make_geometry(const Object& object, Geometry& geometry) {
     const std::uint32_t id = next_object();
-    world_.objects.push_back({object.material, {}, solid(object, id), object.name});
+    add_object(object, id);
     geometry.transform = object.transform;
-    geometry.user = id;
+    geometry.user = id, geometry.mask = mask_of(object);
     if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;
     // Without a material of its own, an instance shows those of the objects inside; a combination always
     // does, as its operands have been given its material if they had none.
@@ -358,7 +570,10 @@ class WorldBuilder {
   std::vector<std::shared_ptr<const Accel>> prototypes_;
   StructureObjects structure_objects_;
   std::set<const TriangleMesh*> seen_;
-  std::uint32_t combination_ = kNoId;  ///< the object whose operands are being made
+  std::uint32_t combination_ = kNoId;                 ///< the object whose operands are being made
+  const bool catches_;                                ///< there are shadow catchers
+  const bool hides_objects_;                          ///< some object is not in all trees of a SeenBy
+  std::unordered_map<const Accel*, SeenBy> seen_by_;  ///< of the structures of lists
 };
 
 }  // namespace
@@ -370,6 +585,7 @@ World build_world(const Scene& scene, const BuildOptions& options) {
 World with_meshes(const World& others, const Scene& scene, std::size_t first,
                   std::shared_ptr<const Accel> top) {
   World world = others;
+  world.seen_by = {};
   set_materials(scene, world);
   std::vector<std::uint32_t> shown;  // as in StructureObjects
   const bool shows_others = stats(*others.accel).items > 0;
@@ -454,12 +670,22 @@ Box tight_bounds(const World& world) {
 void pose(World& world, double time, const BuildOptions& options) {
   std::vector<Geometry> geometries;
   if (world.still != nullptr && stats(*world.still).items > 0)
-    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId});
+    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId, kAllRays | kBareRays});
+  bool hides_any = hides(world.still_seen_by);
   for (MovingObject& object : world.moving) {
     if (object.bent != nullptr) bend(world, object, time, options);
     geometries.push_back({InstanceGeometry{object.shape},
-                          object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user});
+                          object.motion != nullptr ? object.motion->at(time) : Affine{}, object.user,
+                          object.mask});
+    hides_any = hides_any || object.mask != kAllRays || hides(object.seen_by);
   }
+  const auto child_seen_by = [&](const Accel* child) -> const SeenBy* {
+    if (child == world.still.get()) return &world.still_seen_by;
+    const auto found = std::ranges::find(world.moving, child, [](const auto& m) { return m.shape.get(); });
+    return found != world.moving.end() ? &found->seen_by : nullptr;
+  };
+  const std::size_t trees = world.has_catchers ? 2 * kRayKinds : kRayKinds;
+  world.seen_by = hides_any ? build_seen_by(geometries, trees, child_seen_by, options) : SeenBy{};
   world.accel = build_accel(std::move(geometries), options);
   world.bounds = bounds(*world.accel);
 }
@@ -474,21 +700,56 @@ static std::uint32_t object_of_geometry(const World& world, const Accel& accel, 
   return geometry < first ? kNoId : world.moving[geometry - first].instance;
 }
 
-std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user) {
+/// Calls visit(number, is_combination) for the instances and combinations around a hit, outermost first, by
+/// their numbers as objects, until it returns true. Then returns kNoId, else the object whose surface was met
+/// if its structure tells.
+template <class Visit>
+static std::uint32_t visit_objects_around(const World& world, const Hit& hit, const Visit& visit) {
   const Accel* accel = world.accel.get();
   std::uint32_t combination = kNoId;  // the object whose solids `accel` holds
   for (std::uint32_t chain = hit.instance; chain != kNoId;) {
     const ChainLink link = outermost_link(*accel, chain);
     const std::uint32_t first = combination != kNoId ? combination + 1 + link.geometry
                                                      : object_of_geometry(world, *accel, link.geometry);
-    if (!link.is_combination && first != kNoId) {
-      const ObjectMaterials& object = world.objects[first + link.primitive];
-      if (!object.name.empty() || object.material != kNoId) return first + link.primitive;
-    }
+    if (first != kNoId && visit(first + link.primitive, link.is_combination)) return kNoId;
     combination = link.is_combination ? first : kNoId;
     accel = link.child, chain = link.rest;
   }
-  return user;
+  const std::uint32_t geometry = accel->geometry_of(hit.item);
+  if (combination != kNoId) return combination + 1 + geometry;
+  return world.structure_objects->contains(accel) ? object_of_geometry(world, *accel, geometry) : kNoId;
+}
+
+std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user) {
+  std::uint32_t whole = user;
+  visit_objects_around(world, hit, [&](std::uint32_t number, bool is_combination) {
+    const ObjectMaterials& object = world.objects[number];
+    if (is_combination || (object.name.empty() && object.material == kNoId)) return false;
+    whole = number;
+    return true;
+  });
+  return whole;
+}
+
+bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user) {
+  bool found = user < world.objects.size() && world.objects[user].shadow_catcher;
+  const auto look = [&](std::uint32_t number, bool) {
+    return found = found || world.objects[number].shadow_catcher;
+  };
+  if (found) return true;
+  if (const std::uint32_t inner = visit_objects_around(world, hit, look); inner != kNoId) look(inner, false);
+  return found;
+}
+
+std::uint16_t find_light_lists(const World& world, const Hit& hit, std::uint32_t user) {
+  unsigned listed = user < world.objects.size() ? world.objects[user].listed : 0u;
+  const auto add = [&](std::uint32_t number, bool) {
+    listed |= world.objects[number].listed;
+    return false;
+  };
+  // An instance of a material of its own has replaced the number of the object inside.
+  if (const std::uint32_t inner = visit_objects_around(world, hit, add); inner != kNoId) add(inner, false);
+  return static_cast<std::uint16_t>(listed ^ world.lists_of_others);
 }
 
 const Material& material_at(const World& world, const SurfaceInteraction& surface) {

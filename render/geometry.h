@@ -2,6 +2,7 @@
 /// \file The scene made ready for tracing: acceleration structures and materials.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -37,10 +38,13 @@ std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time)
 /// What an object of the scene contributes to shading its hits; indexed by SurfaceInteraction::user.
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
+  std::uint16_t listed = 0;          ///< as in Object
+  bool shadow_catcher = false;       ///< as in Object
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
   /// The object whose inside its surfaces bound: itself, or the combination that it is an operand of. kNoId
   /// if it has no inside, or if paths need not know.
   std::uint32_t solid = kNoId;
+  std::uint32_t light_list = kNoId;  ///< as in Object
   std::string name;  ///< of the object; that of the combination for an operand without one; may be empty
   std::shared_ptr<const StrokeParts> strokes{};  ///< if the object is points and lines
 };
@@ -49,12 +53,19 @@ struct ObjectMaterials {
 /// follow. The operands of a combination, numbered as its solids are, follow the combination.
 using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint32_t>>;
 
+/// What rays of each kind meet of a structure, numbered by RayKind: the same structure without some objects,
+/// with hits of the same numbers. Null: all of it. Behind these, if there are shadow catchers, the same of
+/// catchers and of what glows alone.
+using SeenBy = std::array<std::shared_ptr<const Accel>, 2 * kRayKinds>;
+
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
   MotionPointer motion;            ///< null: it stands still, but is bent
   std::uint32_t user = kNoId;      ///< of the instance, as in Geometry; of what is bent, the object
   std::uint32_t instance = kNoId;  ///< the object, if it is an instance
+  std::uint32_t mask = kAllRays;   ///< Geometry::mask of the instance
+  SeenBy seen_by{};                ///< of `shape`
   // Of a mesh that is bent, of which `shape` and `mesh` are those at a moment.
   std::shared_ptr<const MeshShape> bent{};
   std::shared_ptr<const TriangleMesh> mesh{};
@@ -63,11 +74,13 @@ struct MovingObject {
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's
 /// own; an instance counts as one object.
 struct World {
-  std::shared_ptr<const Accel> accel;
+  std::shared_ptr<const Accel> accel;  ///< of all objects, whatever rays they are for
+  SeenBy seen_by{};                    ///< of `accel`
   std::vector<ObjectMaterials> objects;
   std::vector<Material> materials;  ///< those of the scene, and the default material at the end
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< kept alive for `accel`
   std::shared_ptr<const Accel> still;  ///< what does not move, if anything moves; may be null then
+  SeenBy still_seen_by{};              ///< of `still`
   std::vector<MovingObject> moving;
   /// Of all structures but that of `pose`. Not null.
   std::shared_ptr<const StructureObjects> structure_objects;
@@ -76,6 +89,9 @@ struct World {
   bool has_enclosing_solids = false;  ///< there are any that they must know of
   bool has_holes = false;             ///< some material is not opaque everywhere, or is no surface at all
   bool has_clear = false;             ///< some material is transparent
+  bool has_catchers = false;          ///< there are shadow catchers
+  bool has_light_lists = false;       ///< some light is for some objects only
+  std::uint16_t lists_of_others = 0;  ///< bit i: LightList::lights_others of list i
 
   std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted
   std::uint64_t bent_triangles = 0;             ///< of these: what each moment has a tree of its own for
@@ -87,7 +103,8 @@ struct World {
 };
 
 /// Each prototype becomes one acceleration structure, shared by its instances. References that lead nowhere
-/// (a missing mesh, a prototype that does not stand earlier in the list) are left out.
+/// (a missing mesh, a prototype that does not stand earlier in the list) are left out. Throws Error if an
+/// object that light enters is not seen by all rays while paths must know which solids they are in.
 World build_world(const Scene& scene, const BuildOptions& options = {});
 
 /// The world of `others`, which is that of the objects of `scene` before number `first`, and of the objects
@@ -109,6 +126,40 @@ inline std::uint32_t chain_at(const World& world, std::uint32_t instance) {
 
 /// Places what moves where it is at `time`: changes `accel` and `bounds`. build_world does it for time 0.
 void pose(World& world, double time, const BuildOptions& options = {});
+
+/// What rays of a kind meet.
+inline const Accel& seen_by(const World& world, RayKind kind) {
+  const auto& seen = world.seen_by[static_cast<std::size_t>(kind)];
+  return seen != nullptr ? *seen : *world.accel;
+}
+/// Whether rays of some kind do not meet all objects.
+bool hides_objects(const World& world);
+/// Whether bounces of different kinds meet different objects.
+bool bounces_differ(const World& world);
+/// Whether shadow rays meet other objects than those of some kind of bounce.
+bool shadows_differ(const World& world);
+
+/// The world in which rays other than those of the camera meet only shadow catchers and what glows.
+World without_others(const World& world);
+/// Whether the object at a hit, or an instance or a combination around it, is a shadow catcher. `user` is
+/// that of the hit's surface interaction.
+bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user);
+
+/// Which lists of lights light the object at a hit, as LightPoint::lists: lists that name it, or an instance
+/// or a combination around it, and those of LightList::lights_others that do not. `user` is that of the hit's
+/// surface interaction.
+std::uint16_t find_light_lists(const World& world, const Hit& hit, std::uint32_t user);
+/// The same; all, without the search, if the scene has none.
+inline std::uint16_t light_lists_at(const World& world, const Hit& hit, std::uint32_t user) {
+  return world.has_light_lists ? find_light_lists(world, hit, user) : std::uint16_t{0xffff};
+}
+
+/// Whether the light that an object emits, `user` as before, is for a point of these lists.
+inline bool lights(const World& world, std::uint32_t user, std::uint16_t lists) {
+  if (!world.has_light_lists || user >= world.objects.size()) return true;
+  const std::uint32_t list = world.objects[user].light_list;
+  return list >= kMostLightLists || (lists >> list & 1) != 0;
+}
 
 /// The object that counts as a whole at a hit: the outermost instance that has a name or a material of its
 /// own, else the object whose surface was met. `user` is that of the hit's surface interaction.

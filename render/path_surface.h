@@ -26,6 +26,7 @@ class SurfaceBsdf {
   /// not transmit it.
   std::optional<BsdfSample> sample(float lobe, const SquareSample& u) const;
   bool only_delta() const { return bsdf_.only_delta(); }
+  bool chooses_diffuse(float lobe) const { return bsdf_.chooses_diffuse(lobe); }
 
  private:
   ShadingFrame<Bsdf::D> frame_;

@@ -297,10 +297,19 @@ struct SkyLight {
 /// A light of any kind.
 using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentLight, SkyLight>;
 
+/// A choice of objects that lights are for, see Object::listed.
+struct LightList {
+  bool lights_others = false;  ///< these lights light all objects but those on the list
+  Location where{};            ///< where a scene file states it; else empty
+};
+/// Most lists of a scene.
+inline constexpr std::size_t kMostLightLists = 16;
+
 /// What may be said of any light.
 struct LightTraits {
-  MotionPointer motion{};  ///< moves the light; not of environments and skies
-  std::string group{};     ///< the light group; empty: kDefaultLightGroup
+  MotionPointer motion{};      ///< moves the light; not of environments and skies
+  std::string group{};         ///< the light group; empty: kDefaultLightGroup
+  std::uint32_t list = kNoId;  ///< index into Scene::light_lists; kNoId: it lights all objects
 };
 
 /// The group of all light that is in no other: that of lights without a group, the background and media.
@@ -367,6 +376,24 @@ struct CsgShape {
   std::shared_ptr<const std::vector<Object>> operands;
 };
 
+/// What a ray is for. Those of bounces are called after the lobe that sent them: mirrors and highlights are
+/// glossy, what passes to the other side is transmission, and media send rays of volumes.
+enum class RayKind : std::uint8_t { camera, diffuse, glossy, transmission, volume, shadow };
+inline constexpr std::size_t kRayKinds = 6;
+/// Their names.
+inline constexpr Choice<RayKind> kRayKindNames[kRayKinds] = {
+    {"camera", RayKind::camera}, {"diffuse", RayKind::diffuse},
+    {"glossy", RayKind::glossy}, {"transmission", RayKind::transmission},
+    {"volume", RayKind::volume}, {"shadow", RayKind::shadow}};
+/// A kind in a set of kinds, and the set of all.
+constexpr std::uint8_t bit_of(RayKind kind) {
+  return static_cast<std::uint8_t>(1u << static_cast<unsigned>(kind));
+}
+inline constexpr std::uint8_t kAllRays = (1u << kRayKinds) - 1;
+/// The kinds of bounces.
+inline constexpr RayKind kBounceKinds[] = {RayKind::diffuse, RayKind::glossy, RayKind::transmission,
+                                           RayKind::volume};
+
 /// Any shape that an object can have. Copying, moving and destroying one are functions of scene.cpp: inline,
 /// they take the compiler a second in each file that needs them.
 struct Shape : std::variant<MeshShape, TriangleShape, SphereShape OKTETT_AND_CLOSED_FORMS, ExactShape,
@@ -392,6 +419,16 @@ struct Object {
   MotionPointer motion;
   std::string name;  ///< may be empty
   Location where;    ///< where a scene file defines it; else empty
+  /// The kinds of rays that meet it, by bit_of(); of what an instance shows, those that both state. Operands
+  /// of combinations must have kAllRays.
+  std::uint8_t visible_to = kAllRays;
+  /// Where the camera sees it, the picture shows only how other objects change its light, see write_tile().
+  /// All that an instance shows is one if either states it. Not of operands of combinations.
+  bool shadow_catcher = false;
+  /// Bit i: it is on Scene::light_lists[i], and so is all that it shows.
+  std::uint16_t listed = 0;
+  /// The list of the light that its material emits, as LightTraits::list.
+  std::uint32_t light_list = kNoId;
 };
 
 /// Objects that are rendered only through instances. A prototype may hold instances of prototypes that stand
@@ -415,6 +452,7 @@ struct Scene {
   std::uint32_t medium = kNoId;  ///< index into `media`: what fills the space outside of all solids
   std::vector<Light> lights;
   std::vector<LightTraits> light_traits;  ///< of the light of the same number; may be shorter
+  std::vector<LightList> light_lists;     ///< at most kMostLightLists
   bool lights_given = false;              ///< false: render() adds a key and a fill light beside the camera
   std::vector<Prototype> prototypes;
   std::vector<Object> objects;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "accel/hit_place.h"
@@ -107,9 +108,17 @@ static bool has_place(const Light& light) {
 /// Turns glowing surfaces into emitters.
 class EmitterCollector {
  public:
-  EmitterCollector(const World& world, const LightGroups& groups, SceneLights& lights,
-                   std::vector<Emitter>& emitters)
-      : world_(world), groups_(groups), lights_(lights), emitters_(emitters) {}
+  /// Of surfaces that rays of all of `kinds` meet.
+  EmitterCollector(const World& world, const LightGroups& groups, bool traces_paths,
+                   std::span<const RayKind> kinds, SceneLights& lights, std::vector<Emitter>& emitters,
+                   std::vector<std::uint8_t>& lists)
+      : world_(world),
+        groups_(groups),
+        traces_paths_(traces_paths),
+        kinds_(kinds),
+        lights_(lights),
+        emitters_(emitters),
+        lists_(lists) {}
 
   void collect() {
     if (std::ranges::none_of(world_.materials, can_sample)) return;
@@ -117,12 +126,21 @@ class EmitterCollector {
     visit_placed_geometries(*world_.accel, [&](const PlacedGeometry& p) {
       if (may_glow(p)) placed.push_back(p);
     });
+    for (const RayKind kind : kinds_) leave_hidden_out(seen_by(world_, kind), placed);
     // In an order that does not depend on how the structure was built.
     std::sort(placed.begin(), placed.end(), [](const PlacedGeometry& a, const PlacedGeometry& b) {
       return std::tie(a.instance, a.first_item) < std::tie(b.instance, b.first_item);
     });
-    for (const PlacedGeometry& p : placed)
+    std::vector<Geometry> surfaces;
+    const bool alone = traces_paths_ && shadows_differ(world_);
+    for (const PlacedGeometry& p : placed) {
+      const std::size_t before = emitters_.size();
       std::visit([&](const auto& shape) { add(p, shape); }, p.geometry->shape);
+      if (!alone || emitters_.size() == before) continue;
+      surfaces.push_back({p.geometry->shape, p.to_world, kNoId});
+      lights_.surface_keys_.push_back({p.instance, p.first_item, kNoId});
+    }
+    if (!surfaces.empty()) lights_.emitter_surfaces_ = build_accel(std::move(surfaces));
   }
 
  private:
@@ -131,6 +149,16 @@ class EmitterCollector {
     const bool may_be_hidden = encloses(m) && m.priority != kNoPriority;
     return glows(m) && m.opacity == 1 && m.opacity_texture == kNoId && m.tint_opacity_texture == kNoId &&
            !may_be_hidden;
+  }
+
+  /// Leaves out what `accel`, the world as rays of a kind see it, does not show.
+  void leave_hidden_out(const Accel& accel, std::vector<PlacedGeometry>& placed) const {
+    if (&accel == world_.accel.get()) return;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> shown;
+    visit_placed_geometries(accel, [&](const PlacedGeometry& p) { shown.emplace(p.instance, p.first_item); });
+    std::erase_if(placed, [&](const PlacedGeometry& p) {
+      return !shown.contains({p.instance, p.first_item});
+    });
   }
 
   bool may_glow(const PlacedGeometry& p) const {
@@ -157,6 +185,9 @@ class EmitterCollector {
     lights_.keys_.push_back({p.instance, p.first_item + primitive, number});
     const auto material = static_cast<std::uint32_t>(&m - world_.materials.data());
     if (groups_.any()) lights_.groups_.push_back(groups_.material(material));
+    if (world_.has_light_lists)
+      lists_.push_back(
+          light_list_number(p.user < world_.objects.size() ? world_.objects[p.user].light_list : kNoId));
     emitters_.push_back(std::move(emitter));
     return number;
   }
@@ -236,8 +267,11 @@ class EmitterCollector {
 
   const World& world_;
   const LightGroups& groups_;
+  bool traces_paths_;
+  std::span<const RayKind> kinds_;
   SceneLights& lights_;
   std::vector<Emitter>& emitters_;
+  std::vector<std::uint8_t>& lists_;
 };
 
 static bool is_environment(const Light& light) {
@@ -247,6 +281,7 @@ static bool is_environment(const Light& light) {
 SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLights* like)
     : texture_list_(scene.textures) {
   std::vector<Emitter> emitters;
+  std::vector<std::uint8_t> lists;
   const LightGroups groups = light_groups(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -258,6 +293,7 @@ SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLigh
       environments_.push_back(environment->map);
     if (const auto* sky = std::get_if<SkyLight>(&light)) emitters.push_back(emitter(sun_of(*sky)));
     if (groups.any()) groups_.resize(emitters.size(), groups.of_light[i]);
+    if (world.has_light_lists) lists.resize(emitters.size(), light_list_number(list_of_light(scene, i)));
     const auto* directional = std::get_if<DirectionalLight>(&light);
     const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);
     has_environment_ |= !point;
@@ -265,8 +301,14 @@ SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLigh
   // There may be millions of surfaces, so they are listed only for those who ask.
   const IntegratorSettings& asking = scene.integrator;
   const bool whitted = traits(asking.kind).light_from_points && asking.light_samples > 0;
-  if (whitted || traits(asking.kind).traces_paths) EmitterCollector(world, groups, *this, emitters).collect();
-  set_ = LightSet(std::move(emitters));
+  // A path samples only what each of its bounces may meet; others find it by chance. Whitted's model lights
+  // diffuse surfaces.
+  std::span<const RayKind> kinds = kBounceKinds;
+  if (whitted) kinds = kinds.first(1);
+  static_assert(kBounceKinds[0] == RayKind::diffuse);
+  const bool path = traits(asking.kind).traces_paths;
+  if (whitted || path) EmitterCollector(world, groups, path, kinds, *this, emitters, lists).collect();
+  set_ = LightSet(std::move(emitters), std::move(lists));
 }
 
 std::optional<std::uint8_t> SceneLights::environment_group() const {
@@ -284,6 +326,14 @@ std::uint32_t SceneLights::emitter_at(const Hit& hit) const {
       });
   if (found == keys_.end() || found->instance != hit.instance || found->item != hit.item) return kNoId;
   return found->emitter;
+}
+
+Hit SceneLights::world_hit(const Hit& hit) const {
+  const SurfaceInteraction names = identify(*emitter_surfaces_, hit);
+  const EmitterKey& key = surface_keys_[names.geometry];
+  Hit there = hit;
+  there.instance = key.instance, there.item = key.item + names.primitive;
+  return there;
 }
 
 Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* textures) const {

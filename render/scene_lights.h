@@ -26,6 +26,15 @@ std::optional<RectangleEmitter> rectangle_of(const TriangleEmitter& a, const Tri
 
 // ---- The lights of a scene.
 
+/// LightTraits::list of a light.
+inline std::uint32_t list_of_light(const Scene& scene, std::size_t light) {
+  return light < scene.light_traits.size() ? scene.light_traits[light].list : kNoId;
+}
+/// A list, as in LightTraits, as light sampling numbers it.
+inline std::uint8_t light_list_number(std::uint32_t list) {
+  return list < kMostLightLists ? static_cast<std::uint8_t>(list) : kNoLightList;
+}
+
 /// The sun of a sky.
 DirectionalLight sun_of(const SkyLight& light);
 
@@ -38,8 +47,9 @@ AimedProfile profile_of(const SpotLight& light);
 /// Surfaces that glow are sampled if they are triangles (of which two that follow each other and cover a
 /// rectangle count as one emitter, unless they have a texture), spheres, disks or rectangles (polygons of
 /// four corners) which no combination cuts, with a material without holes that no other solid can hide;
-/// spheres and disks only without a texture of emission and if their transform keeps angles. All other
-/// glowing surfaces give light to the paths that happen to meet them.
+/// spheres and disks only without a texture of emission and if their transform keeps angles. Path tracing
+/// samples only those that all bounces may meet, see Object::visible_to. All other glowing surfaces give
+/// light to the paths that happen to meet them.
 class SceneLights {
  public:
   /// The lights of `scene`, whose lights are filled in, and if the integrator samples them, of the glowing
@@ -51,6 +61,11 @@ class SceneLights {
   const LightSet& set() const { return set_; }
   /// The number of the emitter in set() whose surface was hit; kNoId if it is not sampled.
   std::uint32_t emitter_at(const Hit& hit) const;
+  /// The surfaces of sampled emitters by themselves, in path tracing where shadow rays meet other objects
+  /// than bounces; else null.
+  const Accel* emitter_surfaces() const { return emitter_surfaces_.get(); }
+  /// The hit in the world of a hit of emitter_surfaces().
+  Hit world_hit(const Hit& hit) const;
   /// What the texture of emission makes of the light of a sample.
   Color texture_at(const LightSample& sample, const TextureSampler* textures) const;
   /// Whether rays that meet nothing can find more light than the background's.
@@ -81,6 +96,8 @@ class SceneLights {
   std::vector<TexturedEmitter> textured_;  ///< ordered by emitter
   std::vector<std::shared_ptr<const EnvironmentMap>> environments_;  ///< in the order of their lights
   bool has_environment_ = false;
+  std::shared_ptr<const Accel> emitter_surfaces_;
+  std::vector<EmitterKey> surface_keys_;  ///< of each of their geometries: as in Hit, the first item
 };
 
 }  // namespace oktett

@@ -6,6 +6,7 @@
 #include "accel/interaction_block.h"
 #include "core/vec3.h"
 #include "render/light/emitter.h"
+#include "render/light/light_sample.h"
 
 namespace oktett {
 
@@ -19,6 +20,7 @@ struct LightSource {
   bool falloff = false;
   bool spot = false;
   bool glows = false;                  ///< a point of a glowing surface, whose light goes by Lambert's law
+  std::uint8_t list = kNoLightList;    ///< bit of LightPoint::lists of what it lights
   Vec3f axis;                          ///< of a spot: unit vector along the middle of its cone; of a glowing
                                        ///< surface: the unit normal of its front
   float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades

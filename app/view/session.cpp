@@ -219,7 +219,7 @@ static std::string pick_json(const PreparedScene& prepared, const Camera& camera
   if (x >= window.width() || y >= window.height()) throw Error("the pixel lies outside of the picture");
   const CameraFrame frame = camera_frame(camera, film);
   const Ray ray = camera_ray(frame, window.x0 + x + 0.5, window.y0 + y + 0.5);
-  const Hit hit = closest_hit(*world.accel, ray, isa);
+  const Hit hit = closest_hit(seen_by(world, RayKind::camera), ray, isa);
   const std::string head =
       fmt::format("{{\"x\": {}, \"y\": {}, \"origin\": {}, \"direction\": {}, \"hit\": {}", x, y,
                   list_text(ray.origin), list_text(ray.direction), hit.valid());

@@ -24,7 +24,8 @@ namespace oktett {
 
 namespace {
 
-constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16, kHasOrigin = 32;
+constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16, kHasOrigin = 32,
+                   kCatchers = 64;
 
 void append_pairs(std::string& bytes, const FilmFingerprint::Entries& pairs) {
   append_number(bytes, static_cast<std::uint32_t>(pairs.size()));
@@ -122,10 +123,11 @@ static std::string film_header(const FilmFile& file, std::uint32_t tiles) {
   const FilmState& film = *file.film;
   const FilmPlan& plan = film.plan();
   std::string bytes;
-  const unsigned flags =
-      (plan.format.data_layers ? kDataLayers : 0u) | (plan.format.sample_counts ? kSampleCounts : 0u) |
-      (plan.format.mattes ? kMattes : 0u) | (plan.moves ? kMoves : 0u) |
-      (file.metadata.camera ? kCamera : 0u) | (has_origin(file.metadata) ? kHasOrigin : 0u);
+  const unsigned flags = (plan.format.data_layers ? kDataLayers : 0u) |
+                         (plan.format.sample_counts ? kSampleCounts : 0u) |
+                         (plan.format.mattes ? kMattes : 0u) | (plan.moves ? kMoves : 0u) |
+                         (plan.format.catchers ? kCatchers : 0u) | (file.metadata.camera ? kCamera : 0u) |
+                         (has_origin(file.metadata) ? kHasOrigin : 0u);
   append_number(bytes, static_cast<std::uint8_t>(flags));
   append_window(bytes, plan.format);
   const Tone tone = film.tone();
@@ -150,7 +152,7 @@ static std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
   const unsigned flags = reader.number<std::uint8_t>();
   plan.format.data_layers = (flags & kDataLayers) != 0;
   plan.format.sample_counts = (flags & kSampleCounts) != 0, plan.format.mattes = (flags & kMattes) != 0;
-  plan.moves = (flags & kMoves) != 0;
+  plan.moves = (flags & kMoves) != 0, plan.format.catchers = (flags & kCatchers) != 0;
   if (!plan.format.data_layers && (plan.format.sample_counts || plan.format.mattes))
     throw Error("its layers cannot be");
   take_window(reader, plan.format);

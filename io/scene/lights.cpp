@@ -36,7 +36,7 @@ void add_light(SceneLoad& load, Light light, LightTraits traits) {
     traits.motion = nullptr;
   }
   load.scene.lights.push_back(std::move(light));
-  if (!traits.motion && traits.group.empty()) return;
+  if (!traits.motion && traits.group.empty() && traits.list == kNoId) return;
   load.scene.light_traits.resize(load.scene.lights.size());
   load.scene.light_traits.back() = std::move(traits);
 }
@@ -67,9 +67,15 @@ constexpr const char* kWhite = "of a white surface that faces the light";
 void describe_group(auto& p, std::string& group) {
   p.optional("light_group", LightGroupName{group}, "the layer that gets the light, too");
 }
+void describe_shared(auto& p, LightTraits& traits) {
+  describe_group(p, traits.group);
+  p.optional("only", LightListNames{traits.list, false}, "names of the objects that it lights");
+  p.optional("except", LightListNames{traits.list, true}, "names of the objects that it does not light");
+  p.not_both("only", "except");
+}
 void describe_traits(auto& p, LightTraits& traits) {
   p.optional("motion", traits.motion, "transforms of the light");
-  describe_group(p, traits.group);
+  describe_shared(p, traits);
 }
 void describe_direction(auto& p, const char* key, Vec3d& direction, const char* meaning) {
   p.field(key, direction, meaning);
@@ -210,7 +216,7 @@ struct EnvironmentKeys {
     p.required("file", EnvironmentFile{light.picture}, "an image of all directions");
     p.field("color", light.color, "multiplies the image");
     p.field("rotate", light.rotation, "degrees about the y axis");
-    describe_group(p, traits.group);
+    describe_shared(p, traits);
   }
 };
 
@@ -224,7 +230,7 @@ struct SkyKeys {
     p.field("turbidity", light.turbidity, Range{2, 10}, "from very clear to hazy");
     p.field("ground", light.ground, "colour below the horizon");
     p.field("color", light.color, "multiplies radiance in kcd/m²");
-    describe_group(p, traits.group);
+    describe_shared(p, traits);
   }
 };
 
@@ -272,12 +278,14 @@ void warn_of_idle_emitter(SceneLoad& load, const YamlNode& node) {
 struct Glow {
   Color radiance{1, 1, 1}, power{1, 1, 1};
   LightTraits traits{};
+  std::uint8_t visible_to = kAllRays;
 
   void describe(auto& p) {
     p.field("radiance", radiance, "W/(m² sr)");
     p.optional("power", power, "instead of `radiance`: W of the whole light");
     p.not_both("radiance", "power");
     describe_traits(p, traits);
+    p.optional("visible_to", RayKindSet{visible_to}, "the rays that meet it; all if left out");
   }
 };
 
@@ -296,6 +304,7 @@ void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Gl
   object.shape = std::move(shape);
   object.material = static_cast<std::uint32_t>(load.scene.materials.size() - 1);
   object.where = node.where();
+  object.visible_to = glow.visible_to, object.light_list = glow.traits.list;
   if (const MotionPointer& motion = glow.traits.motion) {
     object.transform = motion->at(0);
     if (motion->moves()) object.motion = motion;

@@ -45,6 +45,21 @@ struct NameTable {
   std::string suggestion(const std::string& name) const;
 };
 
+/// The objects that a name in a scene file stands for: those from `first` up to `end` of the world, or of a
+/// prototype.
+struct NamedObjects {
+  std::uint32_t prototype = kNoId;  ///< index into Scene::prototypes; kNoId: the world
+  std::size_t first = 0, end = 0;
+  bool in_combination = false;  ///< it stands for an operand instead
+};
+
+/// The names that a list of lights gives.
+struct NamedList {
+  bool lights_others = false;
+  std::vector<std::string> names;
+  std::vector<Location> places;  ///< of the names
+};
+
 struct SceneLoad {
   explicit SceneLoad(const Definitions& definitions) : parameters(definitions), values(parameters) {}
   SceneLoad(const SceneLoad&) = delete;
@@ -59,7 +74,10 @@ struct SceneLoad {
   std::optional<IntegratorKind> integrator;  ///< instead of that of the file
   GltfOptions gltf;                          ///< of included glTF files
   std::set<std::string> light_groups;        ///< names that lights and materials have given
-  std::vector<int> prototype_levels;         ///< of instances, its own included, per prototype
+  std::unordered_map<std::string, NamedObjects> named_objects;
+  std::vector<NamedList> light_lists;  ///< of Scene::light_lists
+  std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
+  std::vector<bool> prototype_hides;   ///< per prototype: not all that it shows is visible to all rays
   std::size_t spheres = 0, sphere_file_bytes = 0;
   ErrorList* errors = nullptr;  ///< where errors are gathered; null: the first one is thrown
 

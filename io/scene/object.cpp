@@ -22,7 +22,19 @@ struct Surroundings {
   std::string name;         ///< of members without one
   bool is_dropped = false;  ///< the members are checked but not kept
   Motion motion;            ///< its value at time 0 is `transform`
+  std::uint8_t visible_to = kAllRays;
+  std::uint32_t light_list = kNoId;
+  bool shadow_catcher = false;
 };
+
+std::string visible_to_schema(Schema& schema) {
+  std::uint8_t kinds = kAllRays;
+  return schema_of(schema, kAnyNumber, RayKindSet{kinds});
+}
+std::string light_list_schema(Schema& schema) {
+  std::uint32_t list = kNoId;
+  return schema_of(schema, kAnyNumber, LightListNames{list, false});
+}
 
 /// What an object may have besides the one key that says what it is.
 constexpr SchemaRow kObjectKeys[] = {
@@ -31,7 +43,11 @@ constexpr SchemaRow kObjectKeys[] = {
      [](Schema& schema) { return schema_of(schema, kAnyNumber, Affine{}); }},
     {"motion", "instead of `transform`: transforms by time",
      [](Schema& schema) { return schema_of(schema, kAnyNumber, MotionPointer{}); }},
-    {"name", "for mattes; no two objects have the same", [](Schema&) { return Schema::text(); }}};
+    {"name", "for mattes and lights; no two objects have the same", [](Schema&) { return Schema::text(); }},
+    {"visible_to", "the rays that meet it; all if left out", visible_to_schema},
+    {"shadow_catcher", "the camera sees only the shadows on it", [](Schema&) { return Schema::boolean(); }},
+    {"lights_only", "of what glows: the objects that it lights", light_list_schema},
+    {"lights_except", "of what glows: the objects that it does not light", light_list_schema}};
 
 std::string operands_schema(Schema& schema) { return Schema::list(object_schema(schema), kNotEmpty); }
 
@@ -119,14 +135,21 @@ class ObjectReader {
 
     Object object;
     object.where = node.where();
+    const std::size_t first = out_.size();
     if (const YamlNode* name = fields["name"])
       attempt(*name, [&] {
         object.name = load_.values.text(*name);
         load_.objects.add(object.name, 0, name->where(), "object");
       });
     // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
-    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material,
-                       object.name.empty() ? outer.name : object.name, outer.is_dropped, outer.motion};
+    Surroundings inner{outer.transform,
+                       is_instance ? kNoId : outer.material,
+                       object.name.empty() ? outer.name : object.name,
+                       outer.is_dropped,
+                       outer.motion,
+                       outer.visible_to,
+                       is_instance ? kNoId : outer.light_list,
+                       outer.shadow_catcher};
     if (const YamlNode* material = fields["material"])
       attempt(*material, [&] { inner.material = read_material(load_, *material); });
     if (const YamlNode* transform = fields["transform"])
@@ -138,18 +161,68 @@ class ObjectReader {
                       "expected 'transform' or 'motion', not both; a group can have the other");
         read_motion_of(*motion, inner);
       });
+    read_visibility(fields, inner);
     if (!key) return;
-    if (is_group) {
+    const std::string own_name = object.name;
+    if (is_group)
       for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
-      return;
-    }
+    else
+      add_shape(*key, *value, object, inner);
+    if (!own_name.empty()) note_name(own_name, first);
+  }
+
+  /// What `name` stands for: the objects from `first` on.
+  void note_name(const std::string& name, std::size_t first) {
+    NamedObjects named{kNoId, first, out_.size(), is_operand_};
+    if (!name_.empty()) named.prototype = static_cast<std::uint32_t>(load_.scene.prototypes.size());
+    load_.named_objects.emplace(name, named);
+  }
+
+  void read_visibility(const Fields& fields, Surroundings& inner) {
+    if (const YamlNode* node = fields["visible_to"])
+      attempt(*node, [&] {
+        if (is_operand_)
+          throw Error(node->where(),
+                      "what is in a combination is visible to all rays that meet the combination; expected "
+                      "'visible_to' there");
+        std::uint8_t kinds = kAllRays;
+        RayKindSet set{kinds};
+        read_value(load_, *node, kAnyNumber, set);
+        inner.visible_to &= kinds;
+      });
+    if (const YamlNode* node = fields["shadow_catcher"])
+      attempt(*node, [&] {
+        if (is_operand_)
+          throw Error(node->where(), "a combination is a shadow catcher as a whole; expected the key there");
+        inner.shadow_catcher |= load_.values.boolean(*node);
+      });
+    const auto read_list = [&](const YamlNode* node, bool lights_others) {
+      if (node == nullptr) return;
+      attempt(*node, [&] {
+        if (lights_others && fields["lights_only"])
+          throw Error(node->where(), "expected 'lights_only' or 'lights_except', not both");
+        LightListNames names{inner.light_list, lights_others};
+        read_value(load_, *node, kAnyNumber, names);
+      });
+    };
+    read_list(fields["lights_only"], false), read_list(fields["lights_except"], true);
+    if (inner.light_list != kNoId && fields["instance"] && !fields["material"])
+      throw Error(
+          fields["instance"]->where(),
+          "without a material of its own an instance glows as its prototype does; expected the list of "
+          "lit objects there");
+  }
+
+  /// Adds an object that is no group.
+  void add_shape(const YamlNode& key, const YamlNode& value, Object& object, const Surroundings& inner) {
     std::optional<Shape> shape;
-    if (!attempt(*value, [&, k = key, v = value] { shape = read_any_shape(*k, *v, inner); })) return;
+    if (!attempt(value, [&] { shape = read_any_shape(key, value, inner); })) return;
     if (!shape || inner.is_dropped) return;
-    const std::vector<MeshShape> strokes = take_strokes(*value, *shape);
+    const std::vector<MeshShape> strokes = take_strokes(value, *shape);
     object.shape = std::move(*shape);
     object.name = inner.name;
-    object.material = inner.material;
+    object.material = inner.material, object.visible_to = inner.visible_to;
+    object.light_list = inner.light_list, object.shadow_catcher = inner.shadow_catcher;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
     for (const MeshShape& each : strokes) {
@@ -225,7 +298,7 @@ class ObjectReader {
     const auto nodes = list_items(operands, key.text);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
     // Operands stand in the space of the combination, whose transform applies to all.
-    const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}};
+    const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}, kAllRays, outer.light_list};
     std::vector<Object> solids;
     bool is_nothing = false;
     for (const YamlNode* node : nodes) {
@@ -235,7 +308,10 @@ class ObjectReader {
       reader.read(*node, inner);
       levels_ = std::max(levels_, reader.levels_);
       for (const Object& member : members)
-        attempt(*node, [&] { require_solid(load_, member, "only solids can be combined"); });
+        attempt(*node, [&] {
+          require_solid(load_, member, "only solids can be combined");
+          require_visible(member);
+        });
       // What was skipped is nothing, and so is what it is intersected with or taken from.
       const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
       if (members.empty())
@@ -249,6 +325,14 @@ class ObjectReader {
       return std::nullopt;
     }
     return CsgShape{op, std::make_shared<const std::vector<Object>>(std::move(solids))};
+  }
+
+  /// Throws Error if the operand is an instance of what is not visible to all rays.
+  void require_visible(const Object& operand) const {
+    const auto* const instance = std::get_if<InstanceShape>(&operand.shape);
+    if (instance != nullptr && load_.prototype_hides[instance->prototype])
+      throw Error(operand.where,
+                  "what is in a combination must be visible to all rays, but not all of this prototype is");
   }
 
   std::optional<Shape> read_instance(const YamlNode& node) {
@@ -302,7 +386,7 @@ static std::string object_schema(Schema& schema) {
     visit_surfaces(shapes);
     map.add_one_of(kOtherShapes);
     for (const SchemaRow& other : kObjectKeys) map.add(other.key, other.meaning, other.schema(schema));
-    map.not_both("transform", "motion");
+    map.not_both("transform", "motion"), map.not_both("lights_only", "lights_except");
     return map.text();
   });
 }
@@ -320,6 +404,12 @@ void define_prototypes(SceneLoad& load, const YamlNode& define) {
       load.prototypes.add(k->text, static_cast<std::uint32_t>(load.scene.prototypes.size()), k->where(),
                           "prototype");
     });
+    const auto hides = [&](const Object& object) {
+      const auto* const instance = std::get_if<InstanceShape>(&object.shape);
+      return object.visible_to != kAllRays ||
+             (instance != nullptr && load.prototype_hides[instance->prototype]);
+    };
+    load.prototype_hides.push_back(std::ranges::any_of(prototype.objects, hides));
     load.scene.prototypes.push_back(std::move(prototype));
     load.prototype_levels.push_back(reader.levels());
   }

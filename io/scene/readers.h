@@ -40,8 +40,21 @@ struct MediumName {
 struct LightGroupName {
   std::string& name;
 };
+/// Names of objects: an index into Scene::light_lists. `lights_others`: as in LightList.
+struct LightListNames {
+  std::uint32_t& list;
+  bool lights_others;
+};
+/// Names of kinds of rays, as in Object::visible_to.
+struct RayKindSet {
+  std::uint8_t& kinds;
+};
 
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, FilePath& file);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, LightListNames& names);
+std::string schema_of(Schema& schema, const Range& range, const LightListNames& names);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, RayKindSet& set);
+std::string schema_of(Schema& schema, const Range& range, const RayKindSet& set);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Textured<float>& number);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Textured<Color>& color);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, TextureMap& map);
@@ -154,6 +167,10 @@ auto read_image_file(SceneLoad& load, const YamlNode& node, Read&& read) {
 /// Throws Error at the object's place if it has no inside: if it is flat, open, or a mesh that is not closed.
 /// `why` ends the message: "only solids ...".
 void require_solid(const SceneLoad& load, const Object& object, const std::string& why);
+
+/// Finds the objects that lists of lights name, after all objects have been read. Throws Error at names that
+/// no object has.
+void resolve_light_lists(SceneLoad& load);
 
 // Each says why nothing of the shape or the transform can be seen, or nothing if it is usable.
 /// Zero area, edges that touch each other, or a vertex further from the plane than 1e-5 of the polygon's

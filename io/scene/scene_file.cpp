@@ -242,6 +242,7 @@ class FileReader {
       options.stroke_width = load_.gltf.stroke_width;
       add_file_scene(path, options, load_file_scene(path, options), load_.scene);
       load_.prototype_levels.resize(load_.scene.prototypes.size());
+      load_.prototype_hides.resize(load_.scene.prototypes.size());
       return;
     }
     if (chain_.size() > kMaxIncludeDepth)
@@ -309,6 +310,7 @@ std::string scene_schema() {
 void read_scene_file(const std::string& path, SceneLoad& load) {
   load.scene.source = path;
   FileReader(load).read(path);
+  resolve_light_lists(load);
   if (load.errors != nullptr && load.errors->failures() > 0) return;
   if (load.integrator) load.scene.integrator.kind = *load.integrator;
   move_near(load.scene);

@@ -151,7 +151,8 @@ std::string schema_of(Schema& schema, const Range&, const ByHand& value) {
 }
 
 void SchemaMap::not_both(const char* a, const char* b, const char*, const char*) {
-  apart_.push_back(fmt::format("{{\"required\": [{}]}}", quoted_list({a, b})));
+  // Without the type a map that is left empty, which is null, would have both.
+  apart_.push_back(fmt::format("{{\"type\": \"object\", \"required\": [{}]}}", quoted_list({a, b})));
 }
 
 void SchemaMap::add(const std::string& key, const std::string& meaning, const std::string& schema) {

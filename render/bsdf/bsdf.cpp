@@ -25,6 +25,10 @@ std::optional<BsdfSample> only_sample(const BsdfSamples<Bsdf::D>& s) {
                     any(s.transmitted)};
 }
 
+bool Bsdf::chooses_diffuse(float lobe) const {
+  return std::visit([&](const auto& kept) { return any(kept.lobes.chooses_diffuse(D(lobe))); }, lobes_);
+}
+
 bool Bsdf::only_delta() const {
   return std::visit([](const auto& kept) { return any(kept.lobes.only_delta()); }, lobes_);
 }

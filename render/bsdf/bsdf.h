@@ -39,6 +39,8 @@ class Bsdf {
   }
   /// The same as a lane.
   BsdfSamples<D> samples(float lobe, const SquareSample& u) const;
+  /// Whether `sample` chooses a lobe that is diffuse: neither facets nor a highlight.
+  bool chooses_diffuse(float lobe) const;
   /// Whether `evaluate` is black everywhere.
   bool only_delta() const;
   /// Whether light may pass to the other side.

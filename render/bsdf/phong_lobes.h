@@ -139,6 +139,11 @@ class PhongLobes {
     return sample;
   }
 
+  /// The lanes in which `sample` chooses the diffuse lobe.
+  typename D::M chooses_diffuse(D lobe) const {
+    return s_->only_diffuse ? lobe == lobe : choice_.pick(lobe) == D(kDiffuse);
+  }
+
   /// The lanes in which `evaluate` is black everywhere.
   typename F::M only_delta() const {
     return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)));

@@ -130,6 +130,15 @@ class PrincipledLobes {
     return sample;
   }
 
+  /// The lanes in which `sample` chooses a lobe that is diffuse in shape.
+  M chooses_diffuse(D lobe) const {
+    const D chosen = choice_.pick(lobe);
+    const auto is = [&](int first, int count) { return (chosen >= D(first)) & (chosen < D(first + count)); };
+    return is(Lobes::template first_of<SheenLobe<D>>(), SheenLobe<D>::kChances) |
+           is(Lobes::template first_of<DiffuseLobe<D>>(), DiffuseLobe<D>::kChances) |
+           is(Lobes::template first_of<GlassMultipleLobe<D>>(), GlassMultipleLobe<D>::kChances);
+  }
+
   /// The lanes in which `evaluate` is black everywhere.
   typename F::M only_delta() const {
     M none = view_.wo.z == view_.wo.z;

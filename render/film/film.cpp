@@ -16,6 +16,9 @@ namespace oktett {
 
 // ---- Layers of light groups in a picture: what the lights of one group alone would show.
 
+/// The planes of add_catcher_planes.
+static constexpr const char* kCatcherPlanes[] = {"shadow_catcher.R", "shadow_catcher.G", "shadow_catcher.B"};
+
 static std::string plane_name(const std::string& group, char channel) {
   return fmt::format("light_{}.{}", group, channel);
 }
@@ -44,6 +47,10 @@ void write_layers(Picture& picture, std::size_t first, std::size_t at, std::span
   if (samples == 0) return;
   for (std::size_t k = 0; k < sums.size(); ++k)
     picture.planes[first + k].values[at] = static_cast<float>(sums[k] / samples);
+}
+
+std::size_t FilmFormat::more_sums() const {
+  return 3 * light_groups.size() + (catchers ? std::tuple_size_v<CaughtLight> : 0);
 }
 
 // ---- Pixels.
@@ -150,7 +157,7 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
 bool operator==(const FilmFormat& a, const FilmFormat& b) {
   const auto numbers = [](const FilmFormat& f) {
     return std::make_tuple(f.window.x0, f.window.y0, f.window.x1, f.window.y1, f.full_width, f.full_height,
-                           f.data_layers, f.sample_counts, f.mattes, f.light_groups);
+                           f.data_layers, f.sample_counts, f.mattes, f.light_groups, f.catchers);
   };
   return numbers(a) == numbers(b);
 }
@@ -163,7 +170,8 @@ FilmFormat format_of(const RenderContext& context) {
           layers,
           layers && context.settings.error > 0,
           layers && context.mattes != nullptr,
-          context.light_groups != nullptr ? context.light_groups->names : std::vector<std::string>{}};
+          context.light_groups != nullptr ? context.light_groups->names : std::vector<std::string>{},
+          context.catches};
 }
 
 Picture make_picture(const FilmFormat& format) {
@@ -189,6 +197,7 @@ Picture make_picture(const FilmFormat& format) {
     picture.planes.push_back(
         {kSampleCountPlane, PlaneType::unsigned_int, {}, filled_column(size, std::uint32_t{0})});
   if (format.mattes) add_matte_planes(picture);
+  if (format.catchers && format.data_layers) add_catcher_planes(picture);
   add_light_planes(format.light_groups, picture);
   return picture;
 }
@@ -274,6 +283,58 @@ void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const Pixel
   if (pixel.hits == 0) return;
   set(kZ, pixel.depth, pixel.hits);
   set(kU, pixel.uv[0], pixel.hits), set(kV, pixel.uv[1], pixel.hits);
+}
+
+// ---- Shadow catchers.
+
+/// Entries of CaughtLight.
+constexpr std::size_t kWith = 0, kWithout = 3, kBehind = 6, kCovered = 9, kTransparent = 10;
+
+void add_catcher_planes(Picture& picture) {
+  const std::size_t size = static_cast<std::size_t>(picture.width) * picture.height;
+  for (const char* name : kCatcherPlanes)
+    picture.planes.push_back({name, PlaneType::half_float, filled_column(size, 1.0f), {}});
+}
+
+std::size_t first_catcher_plane(const Picture& picture) {
+  const auto is_first = [&](const PicturePlane& plane) { return plane.name == kCatcherPlanes[0]; };
+  return static_cast<std::size_t>(std::ranges::find_if(picture.planes, is_first) - picture.planes.begin());
+}
+
+CaughtLight caught_light(const RenderContext& context, const SampleBatch& samples, const SampleBatch& bare,
+                         std::size_t i) {
+  const std::size_t caught = samples.caught() + i;
+  const auto covered = static_cast<double>(samples.alpha[caught]);
+  CaughtLight light{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    light[kWith + k] = static_cast<double>(samples.color[caught][k]);
+    light[kWithout + k] = static_cast<double>(bare.color[caught][k]);
+    light[kBehind + k] = static_cast<double>(samples.behind[caught][k]) * covered;
+  }
+  light[kCovered] = covered;
+  light[kTransparent] = context.opaque_background ? 0 : covered;
+  return light;
+}
+
+void write_caught(Picture& picture, std::size_t planes, std::size_t at, std::span<const double> sums,
+                  std::uint32_t samples) {
+  if (samples == 0 || !(sums[kCovered] > 0)) return;
+  const double covered = sums[kCovered] / samples;
+  const auto ratio = [](double with, double without) { return without > 0 ? with / without : 1; };
+  const auto add = [&](std::size_t plane, double more) {
+    float& value = picture.planes[plane].values[at];
+    value = static_cast<float>(static_cast<double>(value) + more);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double left = ratio(sums[kWith + k], sums[kWithout + k]);
+    add(kR + k, sums[kBehind + k] / samples * left);
+    if (planes < picture.planes.size())
+      picture.planes[planes + k].values[at] = static_cast<float>(1 - covered * (1 - left));
+  }
+  const double left = ratio(sums[kWith] + sums[kWith + 1] + sums[kWith + 2],
+                            sums[kWithout] + sums[kWithout + 1] + sums[kWithout + 2]);
+  const double transparent = sums[kTransparent] / samples;
+  add(kA, covered - transparent + transparent * (1 - std::min(1.0, left)));
 }
 
 }  // namespace oktett

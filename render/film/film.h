@@ -1,6 +1,8 @@
 #pragma once
 /// \file Sums the samples of a pixel and writes pixels to the picture.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -22,6 +24,27 @@ std::size_t first_light_plane(const Picture& picture);
 
 /// Adds sample `i`, which is finite, to the sums of a pixel: red, green and blue of each group.
 void add_to_layers(const SampleBatch& samples, std::size_t i, double* sums);
+
+// ---- Shadow catchers.
+
+/// Numbers of what the samples of a pixel see of shadow catchers, or sums of them: light that leaves the
+/// catchers with all objects and without those that are no catchers, the background behind them times what
+/// they cover, what they cover, and what they cover of a transparent background.
+using CaughtLight = std::array<double, 11>;
+
+/// The planes of the light that catchers receive with other objects over that without, weighted by what they
+/// cover; 1 where there is none.
+void add_catcher_planes(Picture& picture);
+/// The first of them; the number of all planes if there is none.
+std::size_t first_catcher_plane(const Picture& picture);
+
+/// What sample `i` of the first half of `samples` sees of catchers, `bare` being that without other objects.
+CaughtLight caught_light(const RenderContext& context, const SampleBatch& samples, const SampleBatch& bare,
+                         std::size_t i);
+
+/// Adds to a pixel that is written what its shadow catchers show. `planes`: as first_catcher_plane.
+void write_caught(Picture& picture, std::size_t planes, std::size_t at, std::span<const double> sums,
+                  std::uint32_t samples);
 
 /// Writes the means over `samples` samples of a pixel to the planes from `first` on at place `at`.
 void write_layers(Picture& picture, std::size_t first, std::size_t at, std::span<const double> sums,
@@ -55,6 +78,10 @@ struct FilmFormat {
   bool sample_counts = false;               ///< the plane kSampleCountPlane; only with data layers
   bool mattes = false;                      ///< the planes of add_matte_planes; only with data layers
   std::vector<std::string> light_groups{};  ///< of the planes of add_light_planes; only with data layers
+  bool catchers = false;                    ///< sums of what shadow catchers show, see CaughtLight
+
+  /// Sums of a pixel beside its PixelSum.
+  std::size_t more_sums() const;
 };
 bool operator==(const FilmFormat& a, const FilmFormat& b);
 

@@ -57,7 +57,7 @@ class TileParts {
     sums_.resize(pixels_.size(), empty_sum());
     if (adaptive_) luminance_.resize(pixels_.size());
     if (context.mattes != nullptr) objects_.resize(pixels_.size()), materials_.resize(pixels_.size());
-    if (context.light_groups != nullptr) channels_ = 3 * context.light_groups->names.size();
+    channels_ = format_of(context).more_sums();
     grouped_.resize(pixels_.size() * channels_);
     counts_.resize(pixels_.size(), context.settings.samples);
   }
@@ -212,16 +212,37 @@ class TileParts {
     trace_wavefront(context, wavefront);
     const SampleBatch& samples = wavefront.samples;
     if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (context.without_others != nullptr) trace_without_others(*context.without_others, pixels, first, last);
+    for (std::size_t i = 0; i < (context.catches ? samples.caught() : samples.size()); ++i) {
       const std::uint32_t pixel = samples.pixel[i];
-      if (!add_to_pixel(sums_[pixel], samples, i)) {
+      CaughtLight caught{};
+      if (context.catches) caught = caught_light(context, samples, work_.bare.samples, i);
+      if (!std::ranges::all_of(caught, [](double x) { return std::isfinite(x); }) ||
+          !add_to_pixel(sums_[pixel], samples, i)) {
         bad_samples_ += is_inside(pixels_[pixel]) ? 1 : 0;
         continue;
       }
-      if (in_pilot_) luminance_[pixel].add(samples.color[i]);
+      if (in_pilot_)
+        luminance_[pixel].add(context.catches ? samples.color[i] + samples.color[samples.caught() + i]
+                                              : samples.color[i]);
       if (context.mattes != nullptr) add_to_mattes(pixel, samples.first[i]);
       add_to_layers(samples, i, grouped_.data() + pixel * channels_);
+      if (!context.catches) continue;
+      double* const sums = grouped_.data() + (pixel + 1) * channels_ - caught.size();
+      for (std::size_t k = 0; k < caught.size(); ++k) sums[k] += caught[k];
     }
+  }
+
+  /// Traces the same samples where there are only shadow catchers and what glows.
+  void trace_without_others(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                            std::uint32_t first, std::uint32_t last) {
+    Wavefront& bare = work_.bare;
+    std::swap(bare.counts, work_.wavefront.counts);
+    start_wavefront(context, pixels, first, last, bare);
+    bare.whole_pixels = false;
+    trace_wavefront(context, bare);
+    if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, bare.samples);
+    std::swap(bare.counts, work_.wavefront.counts);
   }
 
   const RenderContext& context_;
@@ -245,7 +266,7 @@ class TileParts {
 
 bool needs_parts(const RenderContext& context) {
   return context.settings.error > 0 || context.moments != nullptr || context.mattes != nullptr ||
-         context.light_groups != nullptr;
+         context.light_groups != nullptr || context.catches;
 }
 
 TileCounts render_tile_in_parts(const RenderContext& context, const FinishedTile& tile, Picture& picture,
@@ -379,7 +400,8 @@ void write_tile(const FilmFormat& format, const FinishedTile& tile, const TileSu
   PicturePlane* counts = format.sample_counts ? picture.find(kSampleCountPlane) : nullptr;
   const std::size_t object_planes = first_matte_plane(picture, kObjectLayer);
   const std::size_t material_planes = first_matte_plane(picture, kMaterialLayer);
-  const std::size_t light_planes = first_light_plane(picture), channels = 3 * format.light_groups.size();
+  const std::size_t light_planes = first_light_plane(picture), catcher_planes = first_catcher_plane(picture);
+  const std::size_t channels = 3 * format.light_groups.size(), more = format.more_sums();
   std::size_t i = 0;
   for (std::uint32_t y = tile.y; y < tile.y + tile.height; ++y)
     for (std::uint32_t x = tile.x; x < tile.x + tile.width; ++x, ++i) {
@@ -389,8 +411,10 @@ void write_tile(const FilmFormat& format, const FinishedTile& tile, const TileSu
       else
         write_color(picture, x, y, sums.pixels[i]);
       if (counts != nullptr) counts->ids[at] = sums.samples[i];
-      write_layers(picture, light_planes, at, {sums.grouped.data() + i * channels, channels},
-                   sums.pixels[i].good);
+      const std::span<const double> beside(sums.grouped.data() + i * more, more);
+      write_layers(picture, light_planes, at, beside.first(channels), sums.pixels[i].good);
+      if (format.catchers)
+        write_caught(picture, catcher_planes, at, beside.subspan(channels), sums.pixels[i].good);
       if (!format.mattes) continue;
       sums.objects[i].write(picture, object_planes, at, sums.pixels[i].good);
       sums.materials[i].write(picture, material_planes, at, sums.pixels[i].good);
@@ -405,7 +429,7 @@ std::string encode_tile(const FilmFormat& format, const TileSums& sums) {
     encode_column(bytes_of(sums.pixels.data()) + offset, count, sizeof(PixelSum), size, bytes);
   });
   encode_mattes(sums.objects, bytes), encode_mattes(sums.materials, bytes);
-  const std::size_t channels = 3 * format.light_groups.size();
+  const std::size_t channels = format.more_sums();
   for (std::size_t k = 0; k < channels; ++k)
     encode_column(bytes_of(sums.grouped.data() + k), count, channels * sizeof(double), sizeof(double), bytes);
   return bytes;
@@ -421,7 +445,7 @@ TileSums decode_tile(const FilmFormat& format, std::size_t pixels, std::string_v
   });
   if (format.mattes)
     sums.objects = decode_mattes(reader, pixels), sums.materials = decode_mattes(reader, pixels);
-  const std::size_t channels = 3 * format.light_groups.size();
+  const std::size_t channels = format.more_sums();
   if (channels > reader.left() / sizeof(double)) throw Error("the file is cut short");
   sums.grouped.resize(pixels * channels);
   for (std::size_t k = 0; k < channels; ++k)

@@ -66,13 +66,20 @@ struct TileSums {
   std::vector<PixelSum> pixels;
   std::vector<std::uint32_t> samples;         ///< of each pixel, those that were left out included
   std::vector<MatteSums> objects, materials;  ///< of each pixel; empty unless mattes are wanted
-  std::vector<double> grouped;                ///< of each pixel: red, green and blue of each light group
+  /// Of each pixel: red, green and blue of each light group, then CaughtLight if the format has it.
+  std::vector<double> grouped;
 
   /// Samples that were left out.
   std::uint64_t bad_samples() const;
 };
 
 /// Writes all planes of a tile. `picture` is from make_picture(format).
+///
+/// Of shadow catchers that the camera sees only shadows are shown. L being the light that would leave the
+/// catchers of a pixel, and L0 the same without all objects that neither are catchers nor glow, a part 1 - L
+/// / L0 of the pixel is black and hides what is behind, at least 0 and by the mean of the channels, and the
+/// rest is transparent. Before a background that gives light, the pixel shows that times L / L0 of each
+/// channel. Both are sums over the samples of the pixel.
 void write_tile(const FilmFormat& format, const FinishedTile& tile, const TileSums& sums, Picture& picture);
 
 /// The sums as bytes. A sum that is the same in all pixels is kept once.
@@ -93,7 +100,7 @@ struct TileCounts {
 
 /// Memory that a thread reuses from tile to tile.
 struct TileWorkspace {
-  Wavefront wavefront;
+  Wavefront wavefront, bare;           ///< `bare`: the same samples in RenderContext::without_others
   std::vector<WavefrontPixel> pixels;  ///< of the tile
   std::uint32_t width = 0, height = 0;
   std::vector<WavefrontPixel> order;   ///< pixels of a tile of that size, relative to its corner
@@ -118,7 +125,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
                        TileWorkspace& work);
 
 // ---- Tiles whose samples are traced in parts: adaptive sampling, moments of the shutter, mattes, layers of
-// light groups.
+// light groups, shadow catchers.
 
 /// Whether the samples of a tile cannot be traced all alike.
 bool needs_parts(const RenderContext& context);

@@ -10,6 +10,9 @@
 
 namespace oktett {
 
+/// In the place of the number of a list of points that some lights are for: they light all points.
+inline constexpr std::uint8_t kNoLightList = 0xff;
+
 /// A point that is lit.
 struct LightPoint {
   Vec3f position;
@@ -17,6 +20,8 @@ struct LightPoint {
   Vec3f normal;
   /// Light from behind the normal does not matter: the surface is opaque. Such light may still be sampled.
   bool front_only = false;
+  /// Bit i: light of list i, see LightSet, reaches the point.
+  std::uint16_t lists = 0xffff;
   /// The emitter of the LightSet whose surface the point is on; kNoId: none. The position is rounded, so it
   /// does not tell on which side of that surface the point is.
   std::uint32_t on = kNoId;

@@ -17,8 +17,8 @@ static bool seen_at_infinity(const Emitter& emitter) {
   return false;
 }
 
-LightSet::LightSet(std::vector<Emitter> emitters)
-    : emitters_(std::move(emitters)), in_tree_(emitters_.size(), kNever) {
+LightSet::LightSet(std::vector<Emitter> emitters, std::vector<std::uint8_t> lists)
+    : emitters_(std::move(emitters)), lists_(std::move(lists)), in_tree_(emitters_.size(), kNever) {
   std::vector<LightBounds> bounds;
   double sum = 0;
   for (std::uint32_t i = 0; i < emitters_.size(); ++i) {
@@ -89,9 +89,10 @@ std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choic
   if (!sample) return std::nullopt;
   sample->emitter = chosen.emitter;
   if (chosen.distant && !sample->delta && visible_.size() > 1) {
-    sample->radiance = environment_radiance(sample->direction);
+    sample->radiance = environment_radiance(sample->direction, point.lists);
     sample->pdf = environment_pdf(point, sample->direction);
   } else {
+    if (!lights(chosen.emitter, point.lists)) return std::nullopt;
     sample->pdf = static_cast<float>(sample->pdf * chosen.probability);
   }
   return sample->pdf > 0 ? sample : std::nullopt;
@@ -123,9 +124,10 @@ float LightSet::pdf(const LightPoint& point, std::uint32_t emitter, const Vec3f&
   return pdf > 0 ? static_cast<float>(pdf * probability(point, emitter)) : 0;
 }
 
-Color LightSet::environment_radiance(const Vec3f& direction) const {
+Color LightSet::environment_radiance(const Vec3f& direction, std::uint16_t lists) const {
   Color sum;
-  for (const std::uint32_t emitter : visible_) sum += infinite_radiance(emitters_[emitter], direction);
+  for (const std::uint32_t emitter : visible_)
+    if (lights(emitter, lists)) sum += infinite_radiance(emitters_[emitter], direction);
   return sum;
 }
 
@@ -148,7 +150,8 @@ void LightSet::environment_values(const MapCode& code, std::size_t count, const 
   for (const std::uint32_t emitter : visible_) {
     const double probability = distant_probability(emitter);
     const auto add = [&](std::size_t k, const Color& radiance, float pdf) {
-      for (int axis = 0; axis < 3; ++axis) out.radiance[axis][k] += radiance[axis];
+      if (points == nullptr || lights(emitter, points[k].lists))
+        for (int axis = 0; axis < 3; ++axis) out.radiance[axis][k] += radiance[axis];
       if (pdf > 0) sums[k] += pdf * (of_distant[k] * probability);
     };
     if (const auto* e = std::get_if<EnvironmentEmitter>(&emitters_[emitter])) {

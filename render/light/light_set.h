@@ -35,10 +35,18 @@ struct EnvironmentValues {
 class LightSet {
  public:
   LightSet() = default;
-  explicit LightSet(std::vector<Emitter> emitters);
+  /// `lists`: of each emitter the list of points that it lights, by LightPoint::lists; kNoLightList for all,
+  /// and empty if all do. What an emitter does not light it may still be chosen for: that counts as black.
+  explicit LightSet(std::vector<Emitter> emitters, std::vector<std::uint8_t> lists = {});
 
   /// Numbered as they were given.
   const std::vector<Emitter>& emitters() const { return emitters_; }
+  /// Whether light of the emitter reaches points of these lists.
+  bool lights(std::uint32_t emitter, std::uint16_t lists) const {
+    return lists_.empty() || list(emitter) == kNoLightList || (lists >> list(emitter) & 1) != 0;
+  }
+  /// The list of an emitter, or kNoLightList.
+  std::uint8_t list(std::uint32_t emitter) const { return lists_.empty() ? kNoLightList : lists_[emitter]; }
   /// True if sample() never finds anything.
   bool empty() const { return tree_.empty() && distant_.empty(); }
 
@@ -70,13 +78,13 @@ class LightSet {
   /// The probability with which sample() chooses the emitter.
   double probability(const LightPoint& point, std::uint32_t emitter) const;
 
-  /// Radiance of all infinite emitters that are not delta lights, in the unit vector `direction` away from a
-  /// point.
-  Color environment_radiance(const Vec3f& direction) const;
+  /// Radiance of all infinite emitters that are not delta lights and light points of these lists, in the unit
+  /// vector `direction` away from a point.
+  Color environment_radiance(const Vec3f& direction, std::uint16_t lists = 0xffff) const;
   /// The density, per solid angle, with which sample() chooses `direction` to any infinite emitter.
   float environment_pdf(const LightPoint& point, const Vec3f& direction) const;
   /// Both for up to EnvironmentValues::kMost directions, given as columns, with the same bits. Without
-  /// `points` the densities are 0.
+  /// `points` the densities are 0, and all emitters give light.
   void environment_values(const MapCode& code, std::size_t count, const LightPoint* points,
                           const float* const (&direction)[3], EnvironmentValues& out) const;
   /// The numbers of the infinite emitters that are not delta lights.
@@ -98,6 +106,7 @@ class LightSet {
   static constexpr std::uint32_t kNever = 0xffffffffu;
 
   std::vector<Emitter> emitters_;
+  std::vector<std::uint8_t> lists_;  ///< of each emitter; empty if all light all points
   LightTree tree_;
   std::vector<std::uint32_t> placed_;   ///< numbers of the emitters in the tree
   std::vector<std::uint32_t> in_tree_;  ///< per emitter: its number in the tree, or kNever

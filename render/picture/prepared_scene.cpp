@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <mutex>
 
 #include "core/phase.h"
@@ -145,6 +146,62 @@ void describe_world(const World& world, RenderReport& report) {
   report.sah_cost = world.sah_cost;
 }
 
+/// An object that not all rays meet.
+const Object* find_hidden(const Scene& scene) {
+  const auto is_hidden = [](const Object& object) { return object.visible_to != kAllRays; };
+  const auto find = [&](const std::vector<Object>& objects) {
+    const auto found = std::ranges::find_if(objects, is_hidden);
+    return found != objects.end() ? &*found : nullptr;
+  };
+  if (const Object* const object = find(scene.objects)) return object;
+  for (const Prototype& prototype : scene.prototypes)
+    if (const Object* const object = find(prototype.objects)) return object;
+  return nullptr;
+}
+
+/// Throws Error for what cannot be honoured together.
+void check_visibility(const Scene& scene, const World& world, const SceneLights& lights,
+                      const LightGroups& groups) {
+  if (wants_photons(scene.integrator)) {
+    if (const Object* const object = find_hidden(scene))
+      throw Error(object->where, "photons of 'caustics' do not know which rays an object is visible to");
+    if (!scene.light_lists.empty())
+      throw Error(scene.light_lists.front().where, "photons of 'caustics' light all objects");
+  }
+  const bool catches = world.has_catchers && traits(scene.integrator.kind).bounces();
+  if (catches && wants_photons(scene.integrator))
+    throw Error("photons of 'caustics' do not know shadow catchers");
+  if (catches && groups.any()) throw Error("light groups do not know shadow catchers");
+  const std::vector<std::uint32_t>& visible = lights.set().visible();
+  const auto is_listed = [&](std::uint32_t emitter) { return lights.set().list(emitter) != kNoLightList; };
+  if (groups.any() && visible.size() > 1 && std::ranges::any_of(visible, is_listed))
+    throw Error(scene.light_lists.front().where,
+                "light groups cannot tell several environments apart if one lights only some objects");
+}
+
+/// The contexts of a picture and of its moments, without objects that are neither shadow catchers nor glow.
+class BareContexts {
+ public:
+  /// For contexts that keep the light of catchers apart.
+  void share(RenderContext& context, std::span<RenderContext> moments) {
+    if (!context.catches) return;
+    for (RenderContext& moment : moments) add(moment);
+    add(context);
+  }
+
+ private:
+  void add(RenderContext& context) {
+    RenderContext& bare = contexts_.emplace_back(context);
+    bare.world = &worlds_.emplace_back(without_others(*context.world));
+    bare.data_layers = false, bare.mattes = nullptr, bare.light_groups = nullptr, bare.moments = nullptr;
+    set_visibility(bare);
+    context.without_others = &bare;
+  }
+
+  std::deque<World> worlds_;
+  std::deque<RenderContext> contexts_;
+};
+
 /// Begins the film, if there is one, and returns the tiles to render.
 std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture& picture,
                                      const RenderOptions& options) {
@@ -243,11 +300,14 @@ RenderResult PreparedScene::render(const RenderOptions& options) {
   const Mattes mattes = wants_mattes ? mattes_of(world_) : Mattes{};
   if (wants_mattes) context.mattes = &mattes;
   const LightGroups groups = light_groups(scene_);
+  check_visibility(scene_, world_, *lights_, groups);
   if (groups.any() && traits(context.settings.kind).traces_paths && options.data_layers)
     context.light_groups = &groups;
   result.picture = make_picture(format_of(context));
   result.picture.attributes = mattes.attributes;
   moments.share(scene_, context);
+  BareContexts bare;
+  bare.share(context, moments.contexts());
   const Clock::time_point photons = Clock::now();
   const std::vector<Caustics> caustics = share_photons(moments, context, options);
   if (!caustics.empty()) result.photons = caustics.front().map();

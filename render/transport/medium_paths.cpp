@@ -130,13 +130,14 @@ void shade_scattering(const RenderContext& context, Wavefront& wavefront,
     c.light_kind[k] = LightKind::none;
     c.from[k] = {};
     c.from[k].position = InteractionBlock::get(found.position, k);
+    c.from[k].lists = light_lists_in(*context.world, wavefront.paths.dielectrics[c.ray[k]]);
   }
   choose_lights(context, wavefront, all, c.count, c);
   PathOutput output(wavefront, c.count);
   for (std::uint32_t k = 0; k < c.count; ++k) {
     const DielectricStack* const around = &wavefront.paths.dielectrics[c.ray[k]];
     const float anisotropy = context.media[events[k]->medium].anisotropy();
-    output.shade_alone(c, k, around, around, false, [&](PathQueues& out) {
+    output.shade_alone(c, k, around, around, false, RayKind::volume, [&](PathQueues& out) {
       shade_path_run<MediumScattering>(found, arriving_rays(wavefront), c, anisotropy, true, {&k, 1}, out);
     });
   }

@@ -33,12 +33,14 @@ namespace {
 
 /// The weight of the light that the surface at `position`, the hit of entry `ray`, emits: against light
 /// samples that find the same, and none where photons bring it. `emitter`: its number, see
-/// SceneLights::emitter_at.
+/// SceneLights::emitter_at; `user`: as in SurfaceInteraction.
 float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
-                      const Vec3f& position, std::uint32_t emitter) {
+                      const Vec3f& position, std::uint32_t emitter, std::uint32_t user) {
   if (wavefront.level == 0) return 1;
+  if (!lights(*context.world, user, wavefront.paths.from[ray].lists)) return 0;
   const float pdf = wavefront.paths.pdf[ray];
   if (pdf == 0 && !is_caustic(context, wavefront, ray)) return 1;
+  if (pdf > 0 && emitter != kNoId && context.shadows_decide) return 0;
   const LightPoint& from = wavefront.paths.from[ray];
   if (pdf == 0) return emitter != kNoId && context.caustics->brings(emitter) ? 0.0f : 1.0f;
   const float distance = length(position - from.position);
@@ -107,19 +109,21 @@ PathOutput::PathOutput(Wavefront& wavefront, std::size_t places)
               end_of(wavefront.next, wavefront.next_paths, places)} {}
 
 void PathOutput::note_alone(const PathQueues& before, const PathBlock& c, std::size_t k,
-                            const DielectricStack* around, const DielectricStack* behind, bool scatters) {
+                            const DielectricStack* around, const DielectricStack* behind, bool scatters,
+                            RayKind reflected) {
   const std::uint32_t ray = c.ray[k];
   const bool sent = queues_.next.size > before.next.size;
+  const bool transmitted = queues_.next.transmitted > before.next.transmitted;
   if (around != nullptr) {
     const bool light_behind = !c.from[k].front_only && dot(InteractionBlock::get(c.ng, k),
                                                            InteractionBlock::get(c.light_direction, k)) < 0;
     const DielectricStack& at_light = light_behind ? *behind : *around;
     if (queues_.delta.size > before.delta.size) wavefront_.shadows[0].dielectrics.push_back(at_light);
     if (queues_.area.size > before.area.size) wavefront_.shadows[kAreaQueue].dielectrics.push_back(at_light);
-    const bool transmitted = queues_.next.transmitted > before.next.transmitted;
     if (sent) wavefront_.next_paths.dielectrics.push_back(transmitted ? *behind : *around);
   }
   if (!sent) return;
+  wavefront_.next.kind[before.next.size] = transmitted ? RayKind::transmission : reflected;
   const bool scattered = wavefront_.level > 0 && wavefront_.paths.scattered[ray] != 0;
   wavefront_.next_paths.scattered[before.next.size] =
       scatters && (scattered || queues_.next.pdf[before.next.size] > 0) ? 1 : 0;
@@ -201,7 +205,10 @@ void shade_lone(const RenderContext& context, Wavefront& wavefront, const Intera
     add_caustics(context, wavefront, ray, hit.point);
   const DielectricStack* const around =
       context.tracks_dielectrics ? &wavefront.paths.dielectrics[ray] : nullptr;
-  output.shade_alone(c, hit.entry, around, &hit.boundary.behind, true, [&](PathQueues& out) {
+  // Of the lobes of a surface only the one that is chosen counts.
+  const bool diffuse = context.bounces_differ && SurfaceBsdf(hit.point).chooses_diffuse(c.lobe[hit.entry]);
+  const RayKind reflected = diffuse ? RayKind::diffuse : RayKind::glossy;
+  output.shade_alone(c, hit.entry, around, &hit.boundary.behind, true, reflected, [&](PathQueues& out) {
     shade_run(render_code(Isa::scalar), found, arriving_rays(wavefront), c, hit.surface, {&hit.entry, 1},
               out);
   });
@@ -212,10 +219,12 @@ void pass_straight(const RenderContext& context, Wavefront& wavefront, std::size
   push_bounce(wavefront, wavefront.next, ray, hit.point, hit.point.direction, wavefront.rays.throughput[ray],
               Bounce::straight);
   const bool camera = wavefront.level == 0;
-  wavefront.next_paths.push_back(
-      camera ? 0 : wavefront.paths.pdf[ray], camera ? 0 : wavefront.paths.unsampled[ray],
-      camera ? LightPoint{} : wavefront.paths.from[ray], !camera && wavefront.paths.scattered[ray] != 0,
-      context.tracks_dielectrics ? &hit.boundary.behind : nullptr);
+  // Lights that shadow rays decide on have been looked for all along the ray.
+  const float unsampled = context.shadows_decide ? kAllMet : camera ? 0 : wavefront.paths.unsampled[ray];
+  wavefront.next_paths.push_back(camera ? 0 : wavefront.paths.pdf[ray], unsampled,
+                                 camera ? LightPoint{} : wavefront.paths.from[ray],
+                                 !camera && wavefront.paths.scattered[ray] != 0,
+                                 context.tracks_dielectrics ? &hit.boundary.behind : nullptr);
 }
 
 /// Fills `hit` and the normals of its entry. False if the ray passes straight on: through a hole, or where
@@ -265,7 +274,8 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   begin_path_block(context, wavefront, which, found, c);
   RaisedPoints raised = raised_points(context, wavefront, which, found);
   c.raised = &raised;
-  const bool all_alone = context.one_by_one || context.tracks_dielectrics || context.caustics != nullptr;
+  const bool all_alone = context.one_by_one || context.tracks_dielectrics || context.caustics != nullptr ||
+                         context.bounces_differ;
   Shown shown[kMostHits];
   std::uint32_t asks[kMostHits];
   std::size_t in_lanes = 0, asking = 0;
@@ -300,13 +310,14 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     const std::uint32_t emitter = surface->glows ? context.sampled->emitter_at(wavefront.hits[i]) : kNoId;
     if (!(surface->emission == Color{0, 0, 0})) {
       const Color emitted = wavefront.rays.throughput[i] * surface->emission *
-                            emission_weight(context, wavefront, i, position, emitter);
+                            emission_weight(context, wavefront, i, position, emitter, found.user[k]);
       wavefront.radiance.add(i, emitted);
       add_emission_to_layer(context, wavefront, i, number / 2, emitted);
     }
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
-    c.from[k] = {position, normal_for_lights(found, c, k, surface->transmits), !surface->transmits, emitter};
+    c.from[k] = {position, normal_for_lights(found, c, k, surface->transmits), !surface->transmits,
+                 light_lists_at(*context.world, wavefront.hits[i], found.user[k]), emitter};
     if (!surface->only_delta) asks[asking++] = static_cast<std::uint32_t>(k);
     if (alone)
       wavefront.lone_hits.push_back(lone);

@@ -38,12 +38,13 @@ class PathOutput {
   /// Shades one place: `shade(PathQueues&)` writes its rays. `around` and `behind`: the solids at the place,
   /// before and behind the surface; null unless the scene tracks them. `scatters`: a direction that is not
   /// one of finitely many counts as scattered, see PathColumns.
+  /// `reflected`: the kind of rays that are not transmitted.
   template <class Shade>
   void shade_alone(const PathBlock& c, std::size_t k, const DielectricStack* around,
-                   const DielectricStack* behind, bool scatters, Shade&& shade) {
+                   const DielectricStack* behind, bool scatters, RayKind reflected, Shade&& shade) {
     const PathQueues before = queues_;
     shade(queues_);
-    note_alone(before, c, k, around, behind, scatters);
+    note_alone(before, c, k, around, behind, scatters, reflected);
   }
 
   /// Closes the queues. Nothing else may have been pushed to them.
@@ -51,7 +52,7 @@ class PathOutput {
 
  private:
   void note_alone(const PathQueues& before, const PathBlock& c, std::size_t k, const DielectricStack* around,
-                  const DielectricStack* behind, bool scatters);
+                  const DielectricStack* behind, bool scatters, RayKind reflected);
 
   Wavefront& wavefront_;
   std::size_t deltas_, areas_, onward_;  ///< sizes of the queues before

@@ -44,6 +44,9 @@ class LightSampler {
  private:
   void add(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
     const Emitter& emitter = set_.emitters()[chosen.emitter];
+    // Infinite emitters that overlap are told apart by their radiance.
+    if (!set_.lights(chosen.emitter, from.lists) && !(set_.environment_overlaps() && is_infinite(emitter)))
+      return;
     if (chosen.emitter == from.on) return add_alone(k, from, chosen);
     if (const auto* e = std::get_if<TriangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
       return put(triangles_, k, chosen, e);
@@ -66,6 +69,11 @@ class LightSampler {
 
   void add_alone(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
     if (const auto sample = set_.sample(from, chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
+  }
+
+  static bool is_infinite(const Emitter& emitter) {
+    const auto* const sun = std::get_if<DirectionalEmitter>(&emitter);
+    return sun != nullptr ? sun->angle > 0 : std::holds_alternative<EnvironmentEmitter>(emitter);
   }
 
   static bool is_outside(const SphereEmitter& e, const Vec3f& position) {

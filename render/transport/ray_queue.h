@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/ray.h"
@@ -11,6 +12,7 @@
 #include "core/vec3.h"
 #include "render/dielectric_stack.h"
 #include "render/light/light_sample.h"
+#include "render/scene.h"
 #include "render/straight_light.h"
 
 namespace oktett {
@@ -48,6 +50,8 @@ struct RayQueue {
   Column<float> distance;            ///< length of the path up to the ray's origin
   Column<std::uint8_t> bounces;      ///< reflections and refractions so far
   Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
+  /// What other rays are for. Set only if RenderContext::bounces_differ.
+  Column<RayKind> kind;
 
   std::size_t size() const { return sample.size(); }
   bool empty() const { return sample.empty(); }
@@ -56,7 +60,7 @@ struct RayQueue {
   void resize_uninitialized(std::size_t n) {
     rays.resize_uninitialized(n);
     sample.resize_uninitialized(n), throughput.resize_uninitialized(n), distance.resize_uninitialized(n);
-    bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n);
+    bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n), kind.resize_uninitialized(n);
   }
 
   /// Adds the rays of another queue.
@@ -72,6 +76,7 @@ struct RayQueue {
     }
     copy(other.rays.tmin, rays.tmin), copy(other.rays.tmax, rays.tmax), copy(other.sample, sample);
     copy(other.distance, distance), copy(other.bounces, bounces), copy(other.from_camera, from_camera);
+    copy(other.kind, kind);
   }
 
   /// One entry of the columns.
@@ -82,16 +87,21 @@ struct RayQueue {
     float distance = 0;
     std::uint8_t bounces = 0;
     bool from_camera = false;
+    RayKind kind = RayKind::camera;
   };
   Entry operator[](std::size_t i) const {
-    return {rays[i], sample[i], throughput[i], distance[i], bounces[i], from_camera[i] != 0};
+    return {rays[i], sample[i], throughput[i], distance[i], bounces[i], from_camera[i] != 0, kind[i]};
   }
   void push_back(const Entry& e) {
     rays.push_back(e.ray);
     sample.push_back(e.sample), throughput.push_back(e.throughput), distance.push_back(e.distance);
     bounces.push_back(e.bounces), from_camera.push_back(e.from_camera ? 1 : 0);
+    kind.push_back(e.kind);
   }
 };
+
+/// PathColumns::unsampled of the rest of a ray along which met_lights.h has looked for all lights.
+inline constexpr float kAllMet = std::numeric_limits<float>::infinity();
 
 /// What a path knows of the surface that its ray left, beside the columns of a RayQueue: how likely the ray's
 /// direction was, and for which point lights would have been chosen there.

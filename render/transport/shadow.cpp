@@ -92,7 +92,7 @@ static void pass_surfaces(const RenderContext& context, ShadowQueue& queue, Shad
   RaySpan rays = queue.rays;
   for (unsigned layer = 0; layer < kMostPassages && !p.left.empty(); ++layer) {
     p.hits.resize_uninitialized(p.left.size());
-    closest_hit(*context.world->accel, rays, p.hits.span(), context.isa);
+    closest_hit(seen_by(*context.world, RayKind::shadow), rays, p.hits.span(), context.isa);
     look_at_surfaces(context, rule, p);
     go_behind_surfaces(context, rays, rule, p);
     std::swap(p.rays, p.behind);
@@ -111,7 +111,7 @@ void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule 
   if (world.has_holes || (world.has_clear && rule == ShadowRule::transparent_passes))
     return pass_surfaces(context, queue, rule);
   queue.occluded.resize_uninitialized(queue.size());
-  any_hit(*world.accel, queue.rays, queue.occluded, context.isa);
+  any_hit(seen_by(world, RayKind::shadow), queue.rays, queue.occluded, context.isa);
   render_code(context.isa).block_light(queue.occluded, queue.light);
 }
 
@@ -151,7 +151,7 @@ class ShadowWalker {
   void step(ShadowWalks& walks, std::vector<Color>& arriving) {
     const Accel& accel = *context_.world->accel;
     hits_.resize_uninitialized(walks.states.size());
-    closest_hit(accel, walks.rays.span(), hits_.span(), context_.isa);
+    closest_hit(seen_by(*context_.world, RayKind::shadow), walks.rays.span(), hits_.span(), context_.isa);
     kept_.clear();
     for (std::uint32_t k = 0; k < walks.states.size(); ++k) {
       if (!pass_medium(walks.rays[k], hits_[k], walks.states[k])) continue;

@@ -10,6 +10,7 @@
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
+#include "render/transport/met_lights.h"
 #include "render/transport/path.h"
 #include "render/transport/render_code.h"
 #include "render/transport/shadow.h"
@@ -180,9 +181,40 @@ constexpr std::size_t kShadowBatch = 4096;
 /// Number of hits that are shaded together.
 constexpr std::size_t kShadeBlock = InteractionBlock::kMost;
 
+/// What entry `ray` is for.
+RayKind kind_of(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
+  if (wavefront.level == 0 || wavefront.rays.from_camera[ray] != 0) return RayKind::camera;
+  return context.bounces_differ ? wavefront.rays.kind[ray] : RayKind::diffuse;
+}
+
+/// Where rays of different kinds meet different objects.
+void find_hits_by_kind(const RenderContext& context, Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  std::vector<const Accel*> met(count);
+  for (std::size_t i = 0; i < count; ++i) met[i] = &seen_by(*context.world, kind_of(context, wavefront, i));
+  RayBatch rays;
+  HitBatch hits;
+  std::vector<std::uint32_t> which;
+  for (std::size_t first = 0; first < count; ++first) {
+    const Accel* const accel = met[first];
+    if (accel == nullptr) continue;
+    rays.resize_uninitialized(0), which.clear();
+    for (std::size_t i = first; i < count; ++i) {
+      if (met[i] != accel) continue;
+      rays.push_back(wavefront.rays.rays[i]), which.push_back(static_cast<std::uint32_t>(i));
+      met[i] = nullptr;
+    }
+    hits.resize_uninitialized(which.size());
+    closest_hit(*accel, rays.span(), hits.span(), context.isa);
+    for (std::size_t k = 0; k < which.size(); ++k) wavefront.hits.span().set(which[k], hits[k]);
+  }
+}
+
 void find_hits(const RenderContext& context, Wavefront& wavefront) {
   wavefront.hits.resize_uninitialized(wavefront.rays.size());
-  closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
+  if (context.hides_objects && wavefront.level > 0) return find_hits_by_kind(context, wavefront);
+  closest_hit(seen_by(*context.world, RayKind::camera), wavefront.rays.rays.span(), wavefront.hits.span(),
+              context.isa);
 }
 
 /// Sets the radiance of up to 64 rays that meet nothing.
@@ -203,7 +235,8 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
     const std::uint32_t i = misses[k];
     const float pdf = path ? wavefront.paths.pdf[i] : 0;
     const bool by_photons = is_caustic(context, wavefront, i) && context.caustics->brings_distant();
-    const float weight = by_photons ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
+    const bool is_met = context.shadows_decide && pdf > 0;
+    const float weight = by_photons || is_met ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
     const Color light = InteractionBlock::get(found.radiance, k);
     wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
     if (context.light_groups != nullptr) add_environment_to_layers(context, wavefront, i, light, weight);
@@ -253,22 +286,24 @@ void cover_background(const RenderContext& context, Wavefront& wavefront) {
       wavefront.samples.alpha[wavefront.rays.sample[i]] += channel_mean(wavefront.rays.throughput[i]);
 }
 
+/// Traces the rays of a queue of shadow rays.
+void flush_queue(const RenderContext& context, Wavefront& wavefront, std::size_t number) {
+  ShadowQueue& queue = wavefront.shadows[number];
+  const bool holes = traits(context.settings.kind).traces_paths && number == kAreaQueue;
+  const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
+  if (context.tracks_dielectrics)
+    trace_shadows_in_media(context, wavefront, queue, rule);
+  else
+    trace_shadows(context, wavefront, queue, rule);
+  count_shadow_rays(wavefront, queue.size());
+  queue.clear();
+}
+
 /// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
 /// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
-  const bool path = traits(context.settings.kind).traces_paths;
   const std::size_t lights = context.area_lights.empty() ? wavefront.shadows.size() : context.lights.size();
-  for (std::size_t n = 0; n < lights; ++n) {
-    ShadowQueue& queue = wavefront.shadows[n];
-    const bool holes = path && n == kAreaQueue;
-    const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
-    if (context.tracks_dielectrics)
-      trace_shadows_in_media(context, wavefront, queue, rule);
-    else
-      trace_shadows(context, wavefront, queue, rule);
-    count_shadow_rays(wavefront, queue.size());
-    queue.clear();
-  }
+  for (std::size_t n = 0; n < lights; ++n) flush_queue(context, wavefront, n);
   if (!context.area_lights.empty()) flush_emitter_shadows(context, wavefront);
 }
 
@@ -356,6 +391,43 @@ bool meets_anything(const Wavefront& wavefront) {
   return false;
 }
 
+/// Adds the samples that stand for what shadow catchers show, with the places and random numbers of the
+/// others.
+void add_caught_samples(SampleBatch& samples) {
+  const std::size_t count = samples.size();
+  const auto twice = [&](auto& column) {
+    if (column.size() == 0) return;
+    column.resize_uninitialized(2 * count);
+    std::copy_n(column.data(), count, column.data() + count);
+  };
+  twice(samples.pixel), twice(samples.number), twice(samples.key), twice(samples.pattern);
+  twice(samples.offset), twice(samples.first), twice(samples.spawned), twice(samples.alpha);
+  samples.color.resize_uninitialized(2 * count), samples.behind.resize_uninitialized(2 * count);
+  samples.behind.fill(2 * count, {0, 0, 0});
+}
+
+/// Has rays of the camera, as far as they come, belong to the second half of the samples where they meet a
+/// shadow catcher. Without other objects only these count: the others end here, as far as they can.
+void catch_rays(const RenderContext& context, Wavefront& wavefront) {
+  const World& world = *context.world;
+  SampleBatch& samples = wavefront.samples;
+  for (std::size_t i = 0; i < wavefront.rays.size(); ++i) {
+    if (wavefront.rays.from_camera[i] == 0) continue;
+    std::uint32_t& sample = wavefront.rays.sample[i];
+    sample %= samples.caught();
+    if (wavefront.hits.item[i] == kNoId) continue;
+    const Hit hit = wavefront.hits[i];
+    if (is_shadow_catcher(world, hit, identify(*world.accel, hit).user)) {
+      sample += samples.caught();
+      const Color light =
+          context.background + context.sampled->set().environment_radiance(wavefront.rays.rays[i].direction);
+      samples.behind.set(sample, light);
+    } else if (context.without_others == nullptr && !world.has_holes) {
+      wavefront.hits.item[i] = kNoId;
+    }
+  }
+}
+
 /// Fills the columns whose value is the same for all camera rays.
 void fill_camera_rays(Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
@@ -377,6 +449,10 @@ void fill_samples(const RenderContext& context, SampleBatch& samples) {
 }
 
 }  // namespace
+
+void flush_area_shadows(const RenderContext& context, Wavefront& wavefront) {
+  flush_queue(context, wavefront, kAreaQueue);
+}
 
 static void begin_bounce(Wavefront& wavefront) {
   std::vector<BounceReport>& bounces = wavefront.counts.bounces;
@@ -404,6 +480,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
       const bool may_be_empty = !context.opaque_background && !context.tracks_dielectrics;
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
+      if (context.catches) add_caught_samples(wavefront.samples);
       fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);
       start_layers(context, wavefront);
@@ -411,8 +488,11 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
           std::ranges::count_if(wavefront.hits.item, [](std::uint32_t item) { return item != kNoId; }));
       if (context.tracks_dielectrics) enclose_camera_rays(context, wavefront);
     }
+    if (context.shadows_decide) find_met_lights(context, wavefront);
     if (context.tracks_dielectrics) pass_media(context, wavefront);
+    if (context.catches) catch_rays(context, wavefront);
     start_level(context, wavefront);
+    if (context.shadows_decide) add_met_lights(context, wavefront);
     cover_background(context, wavefront);
     if (context.tracks_dielectrics) shade_media(context, wavefront);
     shade_hits(context, wavefront);
@@ -467,6 +547,9 @@ void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const V
   entry.distance = wavefront.rays.distance[ray] + wavefront.hits.t[ray];
   entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
   entry.from_camera = straight && wavefront.rays.from_camera[ray];
+  if (bounce == Bounce::reflected) entry.kind = RayKind::glossy;
+  if (bounce == Bounce::refracted) entry.kind = RayKind::transmission;
+  if (straight && wavefront.level > 0) entry.kind = wavefront.rays.kind[ray];
   queue.push_back(entry);
   ++(bounce == Bounce::reflected ? wavefront.counts.reflected : wavefront.counts.refracted);
 }

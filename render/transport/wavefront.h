@@ -39,8 +39,12 @@ struct SampleBatch {
   Column<std::uint16_t> spawned;     ///< number of rays that Whitted's integrator queued for the next bounce
   Column<FirstHit> first;            ///< empty unless data layers are wanted
   std::vector<ColorColumn> grouped;  ///< per light group its part of `color`; empty unless wanted
+  ColorColumn behind;                ///< of RenderContext::catches: the background that a catcher hides
 
   std::size_t size() const { return pixel.size(); }
+  /// Where the light of shadow catchers is kept apart, the samples of the second half stand for what those of
+  /// the first see of catchers: this is the number of the first one.
+  std::uint32_t caught() const { return static_cast<std::uint32_t>(size() / 2); }
   void resize_uninitialized(std::size_t n, bool data_layers) {
     pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
     offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
@@ -67,6 +71,14 @@ struct MediumEvent {
   std::uint32_t ray;     ///< entry of the wavefront's rays
   std::uint32_t medium;  ///< index into RenderContext::media
   MediumPassage passage;
+};
+
+/// Light that a bounce has led to, if nothing is in the way of a shadow ray; see met_lights.h.
+struct MetLight {
+  std::uint32_t ray;      ///< entry of the wavefront's rays
+  std::uint32_t emitter;  ///< of the LightSet
+  Ray shadow;
+  Color light;  ///< that of the ray, weighted against light samples
 };
 
 /// A hit of a PathBlock that has a surface of its own.
@@ -102,12 +114,13 @@ struct Wavefront {
   std::vector<std::uint32_t> penumbra;
   ShadowQueue penumbra_shadows;
   std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media
-  std::vector<LoneHit> lone_hits;          ///< of the present block
-  Column<std::uint32_t> hit_rays;          ///< entries of `rays` that hit something
-  Column<double> film_x, film_y;           ///< where the camera rays pass the film
-  Column<double> lens_x, lens_y;           ///< and the lens, as in FilmPoints
-  unsigned level = 0;                      ///< number of the bounce; 0 = camera rays
-  bool whole_pixels = true;                ///< all samples of each of its pixels are in this wavefront
+  std::vector<MetLight> met_lights;
+  std::vector<LoneHit> lone_hits;  ///< of the present block
+  Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
+  Column<double> film_x, film_y;   ///< where the camera rays pass the film
+  Column<double> lens_x, lens_y;   ///< and the lens, as in FilmPoints
+  unsigned level = 0;              ///< number of the bounce; 0 = camera rays
+  bool whole_pixels = true;        ///< all samples of each of its pixels are in this wavefront
   RayCounts counts;
 };
 
@@ -122,6 +135,9 @@ ShadowColumns end_of(ShadowQueue& queue, std::size_t more);
 OnwardColumns end_of(RayQueue& queue, std::size_t more);
 /// Sets those columns of the rays from `first` on that are the same for all rays of a bounce.
 void finish_rays(RayQueue& queue, std::size_t first);
+
+/// Traces the shadow rays of path tracing to lights that other rays can meet, and adds their light.
+void flush_area_shadows(const RenderContext& context, Wavefront& wavefront);
 
 /// Counts shadow rays of the present bounce.
 void count_shadow_rays(Wavefront& wavefront, std::size_t rays);

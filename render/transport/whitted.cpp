@@ -113,13 +113,14 @@ void limit_bounces(const RenderContext& context, Wavefront& wavefront, const Sha
 }
 
 void queue_bounces(const RenderContext& context, Wavefront& wavefront, const ShadingColumns& c,
-                   const BounceColumns& sent, RayQueue& queue) {
+                   const BounceColumns& sent, RayKind kind, RayQueue& queue) {
   if (sent.sent == 0) return;
   const std::size_t first = queue.size();
   OnwardColumns to = end_of(queue, static_cast<std::size_t>(std::popcount(sent.sent)));
   render_code(context.isa).queue_rays(sent, c.ray, arriving_rays(wavefront), to);
   queue.resize_uninitialized(to.size);
   finish_rays(queue, first);
+  if (context.bounces_differ) std::fill_n(queue.kind.data() + first, queue.size() - first, kind);
 }
 
 /// Queues the rays that leave holes, mirrors and glass one by one, as those of a sample follow the order of
@@ -156,19 +157,36 @@ void push_bounces(const RenderContext& context, Wavefront& wavefront, const Inte
   if (straight != nullptr) return queue_in_order(context, wavefront, found, c, straight, mirrored, refracted);
   if (!sends) return;
   limit_bounces(context, wavefront, c, mirrored, refracted);
-  queue_bounces(context, wavefront, c, mirrored, wavefront.next);
-  queue_bounces(context, wavefront, c, refracted, wavefront.refracted);
+  queue_bounces(context, wavefront, c, mirrored, RayKind::glossy, wavefront.next);
+  queue_bounces(context, wavefront, c, refracted, RayKind::transmission, wavefront.refracted);
   wavefront.counts.reflected += static_cast<unsigned>(std::popcount(mirrored.sent));
   wavefront.counts.refracted += static_cast<unsigned>(std::popcount(refracted.sent));
 }
 
+/// Takes out the rays from `first` on whose hits a light of this list does not light.
+void keep_listed(const RenderContext& context, const Wavefront& wavefront, const InteractionBlock& found,
+                 std::uint8_t list, const ShadingColumns& c, std::size_t first, ShadowQueue& queue) {
+  std::size_t left = first, k = 0;
+  for (std::size_t i = first; i < queue.size(); ++i) {
+    const std::uint32_t owner = queue.owner[i];
+    while (c.ray[k] != owner) ++k;
+    if ((light_lists_at(*context.world, wavefront.hits[owner], found.user[k]) >> list & 1) == 0) continue;
+    queue.set(left++, queue.rays[i], owner, queue.light[i]);
+  }
+  queue.resize_uninitialized(left);
+}
+
 /// Queues the rays to one light.
-void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
-                      const ShadingColumns& c, ShadowQueue& queue) {
+void push_shadow_rays(const RenderContext& context, const Wavefront& wavefront, const InteractionBlock& found,
+                      const LightSource& light, const ShadingColumns& c, ShadowQueue& queue) {
   const std::size_t first = queue.size();
   ShadowColumns out = end_of(queue, c.count);
   render_code(context.isa).shadow_rays(found, light, c, out);
   queue.resize_uninitialized(out.size);
+  if (light.list != kNoLightList) {
+    keep_listed(context, wavefront, found, light.list, c, first, queue);
+    out.size = queue.size();
+  }
   const Ray like;
   std::fill_n(queue.rays.tmin.data() + first, out.size - first, like.tmin);
   std::fill_n(queue.rays.tmax.data() + first, out.size - first, light.directional ? like.tmax : kBeforeLight);
@@ -200,11 +218,11 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   }
   push_bounces(context, wavefront, found, c, has_holes ? straight : nullptr);
   for (std::size_t n = 0; n < context.lights.size(); ++n)
-    push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);
+    push_shadow_rays(context, wavefront, found, context.lights[n], c, wavefront.shadows[n]);
   const AreaLights& area = context.area_lights;
   const LightSource* points = area.points.data() + area.samples * pattern_of(context, wavefront, which[0]);
   for (std::size_t n = 0; n < area.samples; ++n)
-    push_shadow_rays(context, found, points[n], c, wavefront.shadows[context.lights.size() + n]);
+    push_shadow_rays(context, wavefront, found, points[n], c, wavefront.shadows[context.lights.size() + n]);
 }
 
 void drop_dark_hits(const RenderContext& context, Wavefront& wavefront) {
@@ -258,7 +276,8 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
     const ShadingPoint p = point_at(k);
     put_varying(p, wavefront.rays.throughput[which[k]] * p.opacity, k, c);
   }
-  for_other_points([&](const LightSource& point) { push_shadow_rays(context, found, point, c, queue); });
+  for_other_points(
+      [&](const LightSource& point) { push_shadow_rays(context, wavefront, found, point, c, queue); });
 }
 
 }  // namespace oktett

@@ -58,6 +58,8 @@ std::vector<Case> cases() {
   all.back().scene.light_traits = {{.group = "key"}, {.group = "sun"}};
   all.push_back({"adaptive light groups", all.back().scene});
   all.back().scene.integrator.error = 0.05, all.back().scene.integrator.max_samples = 24;
+  all.push_back({"catcher", balls(IntegratorKind::path, 8)});
+  all.back().scene.objects.back().shadow_catcher = true;
   all.push_back({"motion", balls(IntegratorKind::path, 8)});
   Object& ball = all.back().scene.objects.front();
   ball.motion =
