@@ -231,6 +231,9 @@ void build_moving(TraceScene& scene, const BuildOptions& options) {
 
 void note_children(TraceScene& scene) {
   for (const SceneGeometry& g : scene.geometries) {
+    if (const auto* const fixed = std::get_if<Geometry>(&g.shape))
+      scene.has_simple_hits &= std::holds_alternative<MeshGeometry>(fixed->shape) ||
+                               std::holds_alternative<SpheresShape>(fixed->shape);
     scene.has_masks |= g.mask != ~0u;
     scene.has_closest_filters |= g.closest_filter != nullptr,
         scene.has_any_filters |= g.any_filter != nullptr;
@@ -238,6 +241,7 @@ void note_children(TraceScene& scene) {
       scene.levels = std::max(scene.levels, child.levels + 1);
       if (scene.levels > InstanceChain::kMost)
         refuse(g, "instances are nested deeper than " + std::to_string(InstanceChain::kMost) + " levels");
+      scene.has_simple_hits &= child.has_simple_hits;
       scene.has_masks |= child.has_masks;
       scene.has_closest_filters |= child.has_closest_filters, scene.has_any_filters |= child.has_any_filters;
     });

@@ -62,7 +62,8 @@ class TraceScene {
   Box bounds;                ///< at all times
   std::uint32_t levels = 0;  ///< of instances
   // Here or in a scene inside:
-  bool has_masks = false;  ///< a mask is not ~0
+  bool has_simple_hits = true;  ///< all that does not move are triangles and spheres
+  bool has_masks = false;       ///< a mask is not ~0
   bool has_closest_filters = false, has_any_filters = false;
 
   /// The scene that instance `index` of a geometry shows.

@@ -179,11 +179,11 @@ class SceneTracer {
     }
     if (decide(named)) return;
     // Most rays are rejected a few times at most: they go on behind each hit. Of the others all hits are
-    // found at once.
+    // found at once, as with surfaces whose crossings depend on each other.
     Ray rest = ray_;
     Hit last = first;
     std::vector<Hit> hits;
-    for (int tries = 0; tries < kFewRejected; ++tries) {
+    for (int tries = scene_.has_simple_hits ? 0 : kFewRejected; tries < kFewRejected; ++tries) {
       rest.tmin = std::nextafter(last.t, 0.0f), rest.tmax = last.t;
       all_hits(*scene_.fixed, rest, hits, isa_);
       if (decide_behind(last, hits)) return;
@@ -193,8 +193,7 @@ class SceneTracer {
       named = name_hit(scene_, ray_, context_.mask, chain_, last);
       if (decide(named)) return;
     }
-    rest.tmin = std::nextafter(last.t, 0.0f);
-    all_hits(*scene_.fixed, rest, hits, isa_);
+    all_hits(*scene_.fixed, ray_, hits, isa_);
     decide_behind(last, hits);
   }
 
