@@ -1,5 +1,7 @@
 #include "embree/callbacks.h"
 
+#include "embree/columns.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -34,6 +36,48 @@ class Shown {
   const QueryContext context_;
 };
 
+/// The ray of a query and a hit as functions of the program are given them: themselves, or as one lane of a
+/// packet in which nothing else is valid.
+class Lane {
+ public:
+  Lane(RTCRay& ray, RTCHit* hit, unsigned packet, unsigned lane)
+      : ray_(ray), hit_(hit), n_(packet), lane_(lane) {
+    std::fill_n(valid_, n_, 0);
+    valid_[lane_] = -1;
+    if (n_ == 1) return;
+    store(ray_, rays(), n_, lane_);
+    if (hit_ != nullptr) store(*hit_, hits(), n_, lane_);
+  }
+  /// Takes over what the function has changed.
+  void finish() {
+    if (n_ == 1) return;
+    load(rays(), n_, lane_, ray_);
+    if (hit_ != nullptr) load(hits(), n_, lane_, *hit_);
+  }
+
+  int* valid() { return valid_; }
+  bool is_valid() const { return valid_[lane_] == -1; }
+  unsigned n() const { return n_; }
+  RTCRayN* rays() {
+    return n_ == 1 ? reinterpret_cast<RTCRayN*>(&ray_) : reinterpret_cast<RTCRayN*>(columns_);
+  }
+  RTCHitN* hits() {
+    return n_ == 1 ? reinterpret_cast<RTCHitN*>(hit_)
+                   : reinterpret_cast<RTCHitN*>(columns_ + n_ * sizeof(RTCRay));
+  }
+  /// Both; the hit is that of the RTCRayHit whose ray it is.
+  RTCRayHitN* both() { return reinterpret_cast<RTCRayHitN*>(rays()); }
+
+ private:
+  static_assert(sizeof(RTCRay) == 48 && sizeof(RTCRayHit) == sizeof(RTCRay) + sizeof(RTCHit));
+
+  RTCRay& ray_;
+  RTCHit* const hit_;
+  const unsigned n_, lane_;
+  int valid_[kMostPacket];
+  alignas(64) std::byte columns_[kMostPacket * sizeof(RTCRayHit)];
+};
+
 /// Whether a filter function lets a hit pass, which it may change.
 bool passes(RTCFilterFunctionN filter, const Geometry& geometry, RayQuery& query, SceneHit& hit) {
   RTCHit shown;
@@ -47,17 +91,16 @@ bool passes(RTCFilterFunctionN filter, const Geometry& geometry, RayQuery& query
 #endif
   }
   query.ray->tfar = hit.t;
-  int valid = -1;
-  RTCFilterFunctionNArguments arguments{&valid,
-                                        geometry.user,
-                                        query.context,
-                                        reinterpret_cast<RTCRayN*>(query.ray),
-                                        reinterpret_cast<RTCHitN*>(&shown),
-                                        1};
+  Lane lane(*query.ray, &shown, query.packet, query.lane);
+  RTCFilterFunctionNArguments arguments{lane.valid(), geometry.user, query.context,
+                                        lane.rays(),  lane.hits(),   lane.n()};
   filter(&arguments);
-  if (valid != -1) return false;
+  if (!lane.is_valid()) return false;
+  lane.finish();
   hit.normal = {shown.Ng_x, shown.Ng_y, shown.Ng_z};
   hit.u = shown.u, hit.v = shown.v;
+  hit.primitive = shown.primID, hit.geometry = shown.geomID;
+  hit.t = std::min(hit.t, query.ray->tfar);
   return true;
 }
 
@@ -126,13 +169,13 @@ bool UserCallbacks::closest_hit(std::uint32_t primitive, const Ray& ray, const R
   RTCHit& out = query.rayhit->hit;
   const RTCHit before = out;
   out.geomID = RTC_INVALID_GEOMETRY_ID;
-  int valid = -1;
+  Lane lane(*query.ray, &out, query.packet, query.lane);
   IntersectArguments arguments;
   static_cast<RTCIntersectFunctionNArguments&>(arguments) = {
-      &valid, geometry_.user, primitive, query.context, reinterpret_cast<RTCRayHitN*>(query.rayhit),
-      1,      hit.geometry};
+      lane.valid(), geometry_.user, primitive, query.context, lane.both(), lane.n(), hit.geometry};
   arguments.geometry = &geometry_, arguments.query = &query;
   intersect(&arguments);
+  lane.finish();
   const bool found = out.geomID != RTC_INVALID_GEOMETRY_ID;
   if (found) {
     hit.t = query.ray->tfar, hit.u = out.u, hit.v = out.v;
@@ -154,13 +197,13 @@ bool UserCallbacks::any_hit(std::uint32_t primitive, const Ray& ray, const RayCo
   const RTCOccludedFunctionN occluded = geometry_.occluded != nullptr ? geometry_.occluded : query.occluded;
   if (occluded == nullptr) return false;
   const Shown shown(query, ray, hit.chain);
-  int valid = -1;
+  Lane lane(*query.ray, nullptr, query.packet, query.lane);
   OccludedArguments arguments;
   static_cast<RTCOccludedFunctionNArguments&>(arguments) = {
-      &valid, geometry_.user, primitive, query.context, reinterpret_cast<RTCRayN*>(query.ray),
-      1,      hit.geometry};
+      lane.valid(), geometry_.user, primitive, query.context, lane.rays(), lane.n(), hit.geometry};
   arguments.geometry = &geometry_, arguments.query = &query;
   occluded(&arguments);
+  lane.finish();
   // Where on the ray it is is not told.
   hit.t = std::min(ray.tmax, std::numeric_limits<float>::max());
   return query.ray->tfar < 0;
@@ -174,7 +217,8 @@ void filter_from_callback(const Arguments* arguments, const RTCFilterFunctionNAr
   const Geometry& geometry = *arguments->geometry;
   const RTCFilterFunctionN own = any ? geometry.any_filter : geometry.closest_filter;
   if (own != nullptr) own(filtered);
-  if (*filtered->valid != -1) return;
+  if (std::none_of(filtered->valid, filtered->valid + filtered->N, [](int valid) { return valid == -1; }))
+    return;
   const RayQuery& query = *arguments->query;
   if (query.filter != nullptr && (query.filter_all || geometry.takes_filter_of_query)) query.filter(filtered);
 }

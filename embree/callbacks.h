@@ -16,7 +16,12 @@ struct RayQuery {
   bool filter_all = true;                     ///< `filter` judges hits of all geometries
   RTCIntersectFunctionN intersect = nullptr;  ///< of user geometries that have none of their own
   RTCOccludedFunctionN occluded = nullptr;
+  /// Functions are called for a packet of so many rays, of which this one alone is valid.
+  unsigned packet = 1, lane = 0;
 };
+
+/// The largest packet.
+inline constexpr unsigned kMostPacket = 16;
 
 /// The query that a context belongs to.
 inline RayQuery& query_of(const RayContext& context) { return *static_cast<RayQuery*>(context.user); }

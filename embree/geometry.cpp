@@ -283,7 +283,8 @@ RTC_API void rtcCommitGeometry(RTCGeometry geometry) {
                                               std::to_string(step) + " has " + std::to_string(view->count));
       vertices = view->count;
     }
-    g.change_at_once();
+    // The program may have changed memory that it shares.
+    g.change_shape();
     g.is_committed = true;
   });
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "embree/callbacks.h"
+#include "embree/columns.h"
 #include "embree/scene.h"
 
 namespace oktett::embree {
@@ -56,25 +57,27 @@ class Call {
     keep(any_hit(traced_, to_ray(ray), context_for(ray, query), isa_), ray);
   }
 
-  /// Rays side by side.
-  void closest(std::span<RTCRayHit> rays) {
+  /// Rays side by side. Those of a packet of `packet` have the numbers `lanes` in it.
+  void closest(std::span<RTCRayHit> rays, unsigned packet = 1, const unsigned* lanes = nullptr) {
     Batch batch;
     SceneHit hits[kBatch];
     for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
       const std::span<RTCRayHit> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-      for (std::size_t i = 0; i < part.size(); ++i) batch.set(i, *this, part[i].ray, &part[i]);
+      for (std::size_t i = 0; i < part.size(); ++i)
+        batch.set(i, *this, part[i].ray, &part[i], packet, packet > 1 ? lanes[begin + i] : 0);
       closest_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(hits, part.size()),
                   isa_);
       for (std::size_t i = 0; i < part.size(); ++i) keep(hits[i], part[i]);
     }
   }
 
-  void any(std::span<RTCRay> rays) {
+  void any(std::span<RTCRay> rays, unsigned packet = 1, const unsigned* lanes = nullptr) {
     Batch batch;
     std::uint8_t occluded[kBatch];
     for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
       const std::span<RTCRay> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-      for (std::size_t i = 0; i < part.size(); ++i) batch.set(i, *this, part[i], nullptr);
+      for (std::size_t i = 0; i < part.size(); ++i)
+        batch.set(i, *this, part[i], nullptr, packet, packet > 1 ? lanes[begin + i] : 0);
       any_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(occluded, part.size()),
               isa_);
       for (std::size_t i = 0; i < part.size(); ++i) keep(occluded[i] != 0, part[i]);
@@ -87,8 +90,10 @@ class Call {
  private:
   class Batch {
    public:
-    void set(std::size_t i, const Call& call, RTCRay& ray, RTCRayHit* rayhit) {
+    void set(std::size_t i, const Call& call, RTCRay& ray, RTCRayHit* rayhit, unsigned packet,
+             unsigned lane) {
       queries_[i] = call.query_for(ray, rayhit);
+      queries_[i].packet = packet, queries_[i].lane = lane;
       contexts_[i] = call.context_for(ray, queries_[i]);
       rays_[i] = to_ray(ray);
       // The ray that hits nothing.
@@ -122,13 +127,10 @@ class Call {
   }
 
   RayQuery query_for(RTCRay& ray, RTCRayHit* rayhit) const {
-    return {&ray,
-            rayhit,
-            settings_.context,
-            settings_.filter,
-            settings_.filter_all,
-            settings_.intersect,
-            settings_.occluded};
+    RayQuery query{&ray, rayhit, settings_.context};
+    query.filter = settings_.filter, query.filter_all = settings_.filter_all;
+    query.intersect = settings_.intersect, query.occluded = settings_.occluded;
+    return query;
   }
   RayContext context_for(const RTCRay& ray, RayQuery& query) const {
     return {ray.time, ray.mask, query.filter != nullptr ? QueryFilter::instance() : nullptr, &query};
@@ -140,43 +142,8 @@ class Call {
   QueryContext own_context_;
 };
 
-// ---- Rays in columns: number i of N.
-
-void load(const RTCRayN* from, unsigned n, unsigned i, RTCRay& to) {
-  auto* const rays = const_cast<RTCRayN*>(from);
-  to.org_x = RTCRayN_org_x(rays, n, i), to.org_y = RTCRayN_org_y(rays, n, i);
-  to.org_z = RTCRayN_org_z(rays, n, i), to.tnear = RTCRayN_tnear(rays, n, i);
-  to.dir_x = RTCRayN_dir_x(rays, n, i), to.dir_y = RTCRayN_dir_y(rays, n, i);
-  to.dir_z = RTCRayN_dir_z(rays, n, i), to.time = RTCRayN_time(rays, n, i);
-  to.tfar = RTCRayN_tfar(rays, n, i), to.mask = RTCRayN_mask(rays, n, i);
-  to.id = RTCRayN_id(rays, n, i), to.flags = RTCRayN_flags(rays, n, i);
-}
-
-void load(const RTCHitN* from, unsigned n, unsigned i, RTCHit& to) {
-  auto* const hits = const_cast<RTCHitN*>(from);
-  to.Ng_x = RTCHitN_Ng_x(hits, n, i), to.Ng_y = RTCHitN_Ng_y(hits, n, i), to.Ng_z = RTCHitN_Ng_z(hits, n, i);
-  to.u = RTCHitN_u(hits, n, i), to.v = RTCHitN_v(hits, n, i);
-  to.primID = RTCHitN_primID(hits, n, i), to.geomID = RTCHitN_geomID(hits, n, i);
-  for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
-    to.instID[level] = RTCHitN_instID(hits, n, i, level);
-#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
-    to.instPrimID[level] = RTCHitN_instPrimID(hits, n, i, level);
-#endif
-  }
-}
-
-void store(const RTCHit& from, RTCHitN* hits, unsigned n, unsigned i) {
-  RTCHitN_Ng_x(hits, n, i) = from.Ng_x, RTCHitN_Ng_y(hits, n, i) = from.Ng_y;
-  RTCHitN_Ng_z(hits, n, i) = from.Ng_z;
-  RTCHitN_u(hits, n, i) = from.u, RTCHitN_v(hits, n, i) = from.v;
-  RTCHitN_primID(hits, n, i) = from.primID, RTCHitN_geomID(hits, n, i) = from.geomID;
-  for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
-    RTCHitN_instID(hits, n, i, level) = from.instID[level];
-#if defined(RTC_GEOMETRY_INSTANCE_ARRAY)
-    RTCHitN_instPrimID(hits, n, i, level) = from.instPrimID[level];
-#endif
-  }
-}
+/// The size of packets in which functions of the program are called for `n` rays.
+unsigned packet_of(unsigned n) { return n <= kMostPacket ? n : 1; }
 
 /// `n` rays in columns; those whose `valid` is -1, or all if there is none.
 void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned n) {
@@ -191,7 +158,7 @@ void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned
       load(rays, n, next, batch[count].ray), load(hits, n, next, batch[count].hit);
       number[count++] = next;
     }
-    call.closest(std::span(batch, count));
+    call.closest(std::span(batch, count), packet_of(n), number);
     for (std::size_t k = 0; k < count; ++k) {
       RTCRayN_tfar(rays, n, number[k]) = batch[k].ray.tfar;
       store(batch[k].hit, hits, n, number[k]);
@@ -209,7 +176,7 @@ void any_columns(Call& call, const int* valid, RTCRayN* rays, unsigned n) {
       load(rays, n, next, batch[count]);
       number[count++] = next;
     }
-    call.any(std::span(batch, count));
+    call.any(std::span(batch, count), packet_of(n), number);
     for (std::size_t k = 0; k < count; ++k) RTCRayN_tfar(rays, n, number[k]) = batch[k].tfar;
   }
 }
@@ -424,9 +391,15 @@ void forward_closest(const RTCIntersectFunctionNArguments* arguments, RTCScene h
                      unsigned instance, unsigned index) {
   guarded(device_of(handle), [&] {
     RayQuery& query = *static_cast<const IntersectArguments*>(arguments)->query;
-    Call call(object_of(handle), settings_of(query));
-    const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
-    call.closest(*query.rayhit);
+    {
+      Call call(object_of(handle), settings_of(query));
+      const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
+      call.closest(*query.rayhit);
+    }
+    if (arguments->N == 1) return;
+    RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, query.lane) =
+        query.ray->tfar;
+    store(query.rayhit->hit, RTCRayHitN_HitN(arguments->rayhit, arguments->N), arguments->N, query.lane);
   });
 }
 
@@ -434,9 +407,12 @@ void forward_any(const RTCOccludedFunctionNArguments* arguments, RTCScene handle
                  unsigned instance, unsigned index) {
   guarded(device_of(handle), [&] {
     RayQuery& query = *static_cast<const OccludedArguments*>(arguments)->query;
-    Call call(object_of(handle), settings_of(query));
-    const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
-    call.any(*query.ray);
+    {
+      Call call(object_of(handle), settings_of(query));
+      const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
+      call.any(*query.ray);
+    }
+    if (arguments->N > 1) RTCRayN_tfar(arguments->ray, arguments->N, query.lane) = query.ray->tfar;
   });
 }
 

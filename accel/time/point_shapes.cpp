@@ -71,6 +71,7 @@ class RoundShape : public UserShape {
   Box bounds(std::uint32_t primitive, std::uint32_t key) const override {
     return bounds_of(keys_[key][primitive], false);
   }
+  bool has_several_hits() const override { return true; }
 
  protected:
   KeyTime time_of(const RayContext& context) const { return KeyTime::of(context.time, key_count()); }

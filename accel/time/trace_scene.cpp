@@ -316,16 +316,20 @@ class SceneTracer {
   /// Asks a shape of the program.
   bool ask(const UserShape& shape, const SceneGeometry& geometry, std::uint32_t primitive, const Ray& ray,
            SceneHit& found) {
-    found.chain = chain_;
-    found.t = ray.tmax;
-    found.geometry = geometry.number, found.primitive = primitive, found.user = geometry.user;
     RayContext context = context_;
     context.time = own_time_;
-    if (!(Q == Query::closest ? shape.closest_hit(primitive, ray, context, found)
-                              : shape.any_hit(primitive, ray, context, found)))
-      return false;
-    if (!(ray.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
-    return !filters_ || judge(geometry, ray, {&found, 1}) != nullptr;
+    for (Ray rest = ray;; rest.tmin = found.t) {
+      found = {};
+      found.chain = chain_;
+      found.t = ray.tmax;
+      found.geometry = geometry.number, found.primitive = primitive, found.user = geometry.user;
+      if (!(Q == Query::closest ? shape.closest_hit(primitive, rest, context, found)
+                                : shape.any_hit(primitive, rest, context, found)))
+        return false;
+      if (!(rest.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
+      if (!filters_ || judge(geometry, ray, {&found, 1}) != nullptr) return true;
+      if (!shape.has_several_hits()) return false;
+    }
   }
 
   /// Enters a scene that an instance shows.
