@@ -17,10 +17,12 @@ static void add(std::vector<Workload>& works, Work work, const std::string& name
 /// Calls of few rays: rays that run together, and rays that do not.
 static void add_calls(std::vector<Workload>& works, const Workload& coherent, const Workload& incoherent) {
   for (const Workload* kind : {&coherent, &incoherent})
-    for (const std::size_t batch : {1u, 8u, 64u, 1024u})
-      works.push_back({Work::calls,
-                       std::to_string(batch) + (batch == 1 ? " ray" : " rays") + " a call, " + kind->name,
-                       kind->rays, Query::closest, batch});
+    for (const Query query : {Query::closest, Query::any})
+      for (const std::size_t batch : {1u, 8u, 64u, 1024u})
+        works.push_back({Work::calls,
+                         std::to_string(batch) + (batch == 1 ? " ray" : " rays") + " a call, " +
+                             (query == Query::any ? "any hit, " : "") + kind->name,
+                         kind->rays, query, batch});
 }
 
 std::vector<Workload> make_workloads(const Accel& accel, const Box& framed, const View& view,
@@ -77,8 +79,12 @@ void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answe
   in_pieces(threads, span.size, [&](std::size_t begin, std::size_t count) {
     if (work.query == Query::all)
       return trace_all(accel, span.part(begin, count), hits.part(begin, count), work.batch, isa);
-    if (work.query == Query::closest && work.batch == 1) {
-      for (std::size_t i = begin; i < begin + count; ++i) hits.set(i, closest_hit(accel, span[i], isa));
+    if (work.batch == 1) {
+      for (std::size_t i = begin; i < begin + count; ++i)
+        if (work.query == Query::any)
+          answers.occluded[i] = any_hit(accel, span[i], isa);
+        else
+          hits.set(i, closest_hit(accel, span[i], isa));
       return;
     }
     for (std::size_t b = begin; b < begin + count; b += work.batch) {

@@ -2,6 +2,7 @@
 /// \file Sorting and compacting lanes: how a traversal pushes the children of a node in order, and how
 /// rays that leave some of the lanes are written.
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -224,6 +225,91 @@ OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes
   }
   return size;
 }
+
+/// Eight lanes that are taken one by one, the one with the least key first. Keys are at least 0.
+template <class A>
+class LaneOrder {
+ public:
+  /// The lane with the least key that has not been taken.
+  class Least {
+   public:
+    /// The bits of its key, with the lane's number in the last three; greater than those of any float if all
+    /// lanes have been taken.
+    OKTETT_INLINE std::uint32_t key() const { return key_; }
+    OKTETT_INLINE unsigned lane() const { return key_ & 7; }
+    /// The one of eight `values` that belongs to it.
+    OKTETT_INLINE std::uint32_t pick(const std::uint32_t* values) const { return values[lane()]; }
+
+   private:
+    friend class LaneOrder;
+    std::uint32_t key_ = ~0u;
+  };
+
+  LaneOrder() = default;
+  /// The lanes in `given`.
+  OKTETT_INLINE LaneOrder(const Simd<float, 8, A>& keys, const Mask<float, 8, A>& given) {
+    float key[8];
+    keys.store(key);
+    const unsigned lanes = bits(given);
+    for (unsigned k = 0; k < 8; ++k)
+      key_[k] = (lanes >> k & 1) != 0 ? (std::bit_cast<std::uint32_t>(key[k]) & ~7u) | k : ~0u;
+  }
+
+  OKTETT_INLINE Least least() const {
+    Least l;
+    for (const std::uint32_t key : key_) l.key_ = key < l.key_ ? key : l.key_;
+    return l;
+  }
+  OKTETT_INLINE void take(const Least& l) {
+    for (std::uint32_t& key : key_) key |= key == l.key_ ? ~0u : 0u;
+  }
+
+ private:
+  std::uint32_t key_[8];
+};
+
+#if defined(OKTETT_COMPILED_AVX2)
+template <class A>
+requires kHasFma<A>
+class LaneOrder<A> {
+ public:
+  class Least {
+   public:
+    OKTETT_INLINE std::uint32_t key() const { return static_cast<std::uint32_t>(_mm256_cvtsi256_si32(key_)); }
+    OKTETT_INLINE unsigned lane() const { return key() & 7; }
+    /// In registers: a ray waits for this, and a look-up in memory takes longer.
+    OKTETT_INLINE std::uint32_t pick(const std::uint32_t* values) const {
+      const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+      return static_cast<std::uint32_t>(_mm256_cvtsi256_si32(_mm256_permutevar8x32_epi32(v, key_)));
+    }
+
+   private:
+    friend class LaneOrder;
+    __m256i key_;  ///< in all lanes
+  };
+
+  LaneOrder() = default;
+  OKTETT_INLINE LaneOrder(const Simd<float, 8, A>& keys, const Mask<float, 8, A>& given) {
+    const __m256i key =
+        _mm256_or_si256(_mm256_andnot_si256(_mm256_set1_epi32(7), _mm256_castps_si256(keys.part[0])),
+                        _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    const __m256i left_out = _mm256_andnot_si256(_mm256_castps_si256(given.part[0]), _mm256_set1_epi32(-1));
+    key_ = _mm256_or_si256(key, left_out);
+  }
+
+  OKTETT_INLINE Least least() const {
+    Least l;
+    l.key_ = _mm256_min_epu32(key_, _mm256_permute2x128_si256(key_, key_, 1));
+    l.key_ = _mm256_min_epu32(l.key_, _mm256_shuffle_epi32(l.key_, 0x4e));
+    l.key_ = _mm256_min_epu32(l.key_, _mm256_shuffle_epi32(l.key_, 0xb1));
+    return l;
+  }
+  OKTETT_INLINE void take(const Least& l) { key_ = _mm256_or_si256(key_, _mm256_cmpeq_epi32(key_, l.key_)); }
+
+ private:
+  __m256i key_;
+};
+#endif
 
 /// Writes the `values` of the lanes in `lanes` to `out`, lowest lane first; returns their number. T has 32
 /// bits. Eight `values` are read, and eight of `out` may be overwritten; it may begin at `values` or before.

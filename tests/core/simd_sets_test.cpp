@@ -154,6 +154,26 @@ TEST(SimdSets, SortsTheChosenLanesByDescendingKey) {
     }
 }
 
+TEST(SimdSets, TakesTheChosenLanesByAscendingKey) {
+  std::mt19937 random(4);
+  for (const Isa isa : available_isas())
+    for (unsigned lanes = 0; lanes < 256; ++lanes) {
+      float keys[8];
+      std::uint32_t values[8], out_values[8], out_keys[8];
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, taken;
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        keys[i] = random() % 4 == 0 ? INFINITY : static_cast<float>(random() % 5) * 0.3f;
+        values[i] = static_cast<std::uint32_t>(random());
+        if (lanes >> i & 1)
+          expected.emplace_back((std::bit_cast<std::uint32_t>(keys[i]) & ~7u) | i, values[i]);
+      }
+      std::sort(expected.begin(), expected.end());
+      const int size = simd_probe_code(isa).take_least(keys, lanes, values, out_values, out_keys);
+      for (int i = 0; i < size; ++i) taken.emplace_back(out_keys[i], out_values[i]);
+      ASSERT_EQ(taken, expected) << to_string(isa);
+    }
+}
+
 TEST(SimdSets, CompactsLooksUpAndLoadsWordsAsSingleNumbers) {
   std::mt19937 random(5);
   for (const Isa isa : available_isas()) {

@@ -73,6 +73,16 @@ const SimdProbeCode& simd_probe_code() {
          float* out_keys) {
         return store_descending(Simd<float, 8, A>::load(keys), lanes, values, out_values, out_keys);
       },
+      [](const float* keys, unsigned lanes, const std::uint32_t* values, std::uint32_t* out_values,
+         std::uint32_t* out_keys) {
+        LaneOrder<A> order(Simd<float, 8, A>::load(keys), Mask<float, 8, A>::from_bits(lanes));
+        int size = 0;
+        for (auto least = order.least(); least.key() != ~0u; least = order.least(), ++size) {
+          out_values[size] = least.pick(values), out_keys[size] = least.key();
+          order.take(least);
+        }
+        return size;
+      },
       [](unsigned lanes, const std::uint32_t* values, std::uint32_t* out) {
         return store_compact<A>(lanes, values, out);
       },

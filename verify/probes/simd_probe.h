@@ -44,6 +44,9 @@ struct SimdProbeCode {
   void (*ints)(SimdOp op, int width, const SimdColumns<std::int32_t>& run);
   int (*store_descending)(const float* keys, unsigned lanes, const std::uint32_t* values,
                           std::uint32_t* out_values, float* out_keys);
+  /// The lanes of a LaneOrder as they are taken, and their keys; returns their number.
+  int (*take_least)(const float* keys, unsigned lanes, const std::uint32_t* values, std::uint32_t* out_values,
+                    std::uint32_t* out_keys);
   int (*store_compact)(unsigned lanes, const std::uint32_t* values, std::uint32_t* out);
   /// Eight indices of four bits from the bits 4 k of `words`, looked up in 16 numbers.
   void (*look_up)(const std::uint16_t* words, int k, const float* row, float* out);

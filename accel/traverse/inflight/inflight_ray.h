@@ -113,12 +113,13 @@ OKTETT_INLINE std::uint32_t near_offset(std::uint32_t axis, unsigned negative) {
   return static_cast<std::uint32_t>(BvhNode::kWidth) * (2 * axis + negative);
 }
 
-/// The slab test in fused form: the children of `node` that a ray meets, as bits, and their near distances.
-/// `near_row` are the offsets of the near planes in the node, per axis; see RayChunk for the others.
-template <class A, class F = Simd<float, BvhNode::kWidth, A>>
-OKTETT_INLINE unsigned fused_slab(const BvhNode& node, const std::uint32_t (&near_row)[3],
-                                  const std::array<F, 3>& inverse, const std::array<F, 3>& near_shift,
-                                  const std::array<F, 3>& far_shift, const F& tmin, const F& limit, F& near) {
+/// The slab test in fused form: where a ray enters the boxes of a node's children, `near`, and where it
+/// leaves them, which is returned. It meets those that it does not leave before it enters. `near_row` are the
+/// offsets of the near planes in the node, per axis; see RayChunk for the others.
+template <class F>
+OKTETT_INLINE F fused_interval(const BvhNode& node, const std::uint32_t (&near_row)[3],
+                               const std::array<F, 3>& inverse, const std::array<F, 3>& near_shift,
+                               const std::array<F, 3>& far_shift, const F& tmin, const F& limit, F& near) {
   constexpr std::uint32_t kOther = BvhNode::kWidth;
   const float* rows = &node.plane[0][0];
   F n[3], f[3];
@@ -127,8 +128,7 @@ OKTETT_INLINE unsigned fused_slab(const BvhNode& node, const std::uint32_t (&nea
     f[k] = fast_fma(F::load(rows + (near_row[k] ^ kOther)), inverse[k], far_shift[k]);
   }
   near = max(max(n[0], n[1]), max(n[2], tmin));
-  const F far = min(min(f[0], f[1]), min(f[2], limit));
-  return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
+  return min(min(f[0], f[1]), min(f[2], limit)) * F(kSlabRelativeSlack);
 }
 
 /// W rays in columns. A box is met if
@@ -405,8 +405,9 @@ OKTETT_INLINE unsigned node_inflight(const InflightHead& ray, const BvhNode& nod
                                      Simd<float, BvhNode::kWidth, A>& near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
-  return fused_slab<A>(node, ray.near_row, each(ray.inv), each(ray.near_shift), each(ray.far_shift),
-                       F(ray.tmin), F(ray.limit), near);
+  const F far = fused_interval<F>(node, ray.near_row, each(ray.inv), each(ray.near_shift),
+                                  each(ray.far_shift), F(ray.tmin), F(ray.limit), near);
+  return less_equal_lanes<A>(near, far);
 }
 
 /// Pushes the children that the ray meets, the nearest last (for Query::any in any order), and pops the next
