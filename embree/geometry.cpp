@@ -498,6 +498,7 @@ TurningMap to_turning_map(const RTCQuaternionDecomposition& q) {
 }
 
 Affine read_transform(RTCFormat format, const void* data) {
+  if (data == nullptr) fail(RTC_ERROR_INVALID_ARGUMENT, "there is no transform");
   const MatrixFormat m = matrix_format(format);
   const auto* const numbers = static_cast<const float*>(data);
   Affine map;
@@ -509,6 +510,7 @@ Affine read_transform(RTCFormat format, const void* data) {
 }
 
 void write_transform(const Affine& map, RTCFormat format, void* data) {
+  if (data == nullptr) fail(RTC_ERROR_INVALID_ARGUMENT, "there is no place for the transform");
   const MatrixFormat m = matrix_format(format);
   auto* const numbers = static_cast<float*>(data);
   for (int r = 0; r < m.rows; ++r)
@@ -568,6 +570,7 @@ RTC_API void rtcSetGeometryTransformQuaternion(RTCGeometry geometry, unsigned st
     if (step >= g.time_steps)
       fail(RTC_ERROR_INVALID_ARGUMENT,
            "time step " + std::to_string(step) + ", expected less than " + std::to_string(g.time_steps));
+    if (map == nullptr) fail(RTC_ERROR_INVALID_ARGUMENT, "there is no transform");
     g.turning.resize(g.time_steps);
     g.turning[step] = to_turning_map(*map);
     g.change_shape();

@@ -215,6 +215,7 @@ static RTCBounds to_bounds(const Box& b) { return {b.lo.x, b.lo.y, b.lo.z, 0, b.
 
 RTC_API void rtcGetSceneBounds(RTCScene scene, RTCBounds* out) {
   with(scene, [&](Scene& s) {
+    if (out == nullptr) fail(RTC_ERROR_INVALID_ARGUMENT, "there is no place for the bounds");
     const SceneBounds b = bounds(*s.to_trace().scene);
     Box all = b.first;
     all.grow(b.last);
