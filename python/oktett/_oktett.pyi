@@ -109,12 +109,25 @@ class Scene:
         *,
         fields: Sequence[Field] = ...,
         mask: npt.ArrayLike = 0xFFFFFFFF,
+        ignore: Optional[Mapping[int, npt.ArrayLike]] = None,
     ) -> Hits: ...
     def any_hit(
-        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: npt.ArrayLike = 0xFFFFFFFF
+        self,
+        rays: npt.ArrayLike,
+        tmin: npt.ArrayLike = 0.0,
+        tmax: npt.ArrayLike = ...,
+        *,
+        mask: npt.ArrayLike = 0xFFFFFFFF,
+        ignore: Optional[Mapping[int, npt.ArrayLike]] = None,
     ) -> npt.NDArray[np.bool_]: ...
     def count_hits(
-        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ..., *, mask: npt.ArrayLike = 0xFFFFFFFF
+        self,
+        rays: npt.ArrayLike,
+        tmin: npt.ArrayLike = 0.0,
+        tmax: npt.ArrayLike = ...,
+        *,
+        mask: npt.ArrayLike = 0xFFFFFFFF,
+        ignore: Optional[Mapping[int, npt.ArrayLike]] = None,
     ) -> npt.NDArray[np.uint32]: ...
     def all_hits(
         self,
@@ -124,6 +137,7 @@ class Scene:
         *,
         fields: Sequence[Field] = ...,
         mask: int = 0xFFFFFFFF,
+        ignore: Optional[Mapping[int, npt.ArrayLike]] = None,
     ) -> HitLists: ...
     def closest_point(
         self, points: npt.ArrayLike, *, fields: Sequence[PointField] = ...

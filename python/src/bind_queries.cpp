@@ -122,6 +122,35 @@ class RayMasks {
   std::vector<std::uint32_t> index_;  ///< of each ray: its world; empty if there is one
 };
 
+/// Flags of primitives by their objects: arrays that are kept alive, and where they lie.
+class Ignored {
+ public:
+  explicit Ignored(py::handle given) {
+    if (given.is_none()) return;
+    if (!py::isinstance<py::dict>(given))
+      throw py::value_error("ignore: expected a dict of arrays of bool by objects");
+    for (const auto& [object, flags] : py::reinterpret_borrow<py::dict>(given)) {
+      std::uint32_t number;
+      try {
+        number = object.cast<std::uint32_t>();
+      } catch (const py::cast_error&) {
+        throw py::value_error("ignore: expected numbers of objects as keys");
+      }
+      const py::array array = py::array::ensure(flags);
+      PyErr_Clear();
+      if (!array || array.dtype().kind() != 'b' || array.ndim() != 1)
+        throw py::value_error("ignore: expected one bool for each primitive of an object");
+      const auto& kept = arrays_.emplace_back(dense<bool>(array));
+      primitives.of_object[number] = {kept.data(), static_cast<std::size_t>(kept.size())};
+    }
+  }
+
+  IgnoredPrimitives primitives;
+
+ private:
+  std::vector<py::array_t<bool, py::array::c_style | py::array::forcecast>> arrays_;
+};
+
 RayOrder picture_order(const RayRows& rays) {
   return RayOrder(rays.size, picture_width(rays.rows, rays.size));
 }
@@ -142,7 +171,7 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
 }
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                           const Fields& fields, py::handle mask) {
+                           const Fields& fields, py::handle mask, py::handle ignore) {
   check_fields(fields, kHitFields);
   RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
@@ -151,34 +180,40 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
   const RayMasks masks(scene, mask, arguments.shape);
+  const Ignored ignored(ignore);
   const RayRows& rows = arguments.rows_in(masks.world());
   make_places(result, "position", fields, arguments.shape, masks.world().origin, columns.position);
   columns.attributes = attribute_columns(fields, masks.world());
   make_attributes(result, arguments.shape, columns.attributes, fields);
-  masks.run(picture_order(rows),
-            [&](const World& world, Places places) { closest_hits(world, rows, places, columns); });
+  masks.run(picture_order(rows), [&](const World& world, Places places) {
+    closest_hits(world, rows, places, ignored.primitives, columns);
+  });
   return py::module_::import("oktett._results").attr("Hits")(**result);
 }
 
-py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax, py::handle mask) {
+py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax, py::handle mask,
+                      py::handle ignore) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
   const RayMasks masks(scene, mask, arguments.shape);
+  const Ignored ignored(ignore);
   const RayRows& rows = arguments.rows_in(masks.world());
-  masks.run(picture_order(rows),
-            [&](const World& world, Places places) { any_hits(world, rows, places, out); });
+  masks.run(picture_order(rows), [&](const World& world, Places places) {
+    any_hits(world, rows, places, ignored.primitives, out);
+  });
   return result;
 }
 
 py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                         py::handle mask) {
+                         py::handle mask, py::handle ignore) {
   RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
   const RayMasks masks(scene, mask, arguments.shape);
+  const Ignored ignored(ignore);
   const RayRows& rows = arguments.rows_in(masks.world());
   masks.run(picture_order(rows), [&, out = result.mutable_data()](const World& world, Places places) {
-    count_hits(world, rows, places, out);
+    count_hits(world, rows, places, ignored.primitives, out);
   });
   return result;
 }
@@ -221,9 +256,10 @@ py::array joined_splits(const std::vector<FoundHits>& pieces, std::size_t rays) 
 }
 
 py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
-                        const Fields& fields, std::uint32_t mask) {
+                        const Fields& fields, std::uint32_t mask, py::handle ignore) {
   check_fields(fields, kHitFields);
   RayArguments arguments(rays, tmin, tmax);
+  const Ignored ignored(ignore);
   // Only whether a column is null counts.
   HitColumns wanted;
   static float some_float;
@@ -241,8 +277,9 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
   const RayOrder order(rows.size, 0);
   std::vector<FoundHits> pieces(order.piece_count());
   wanted.attributes = attribute_columns(fields, *world);
-  run_in_places(order,
-                [&](std::size_t k, Places places) { all_hits(*world, rows, places, wanted, pieces[k]); });
+  run_in_places(order, [&](std::size_t k, Places places) {
+    all_hits(*world, rows, places, ignored.primitives, wanted, pieces[k]);
+  });
   py::dict result;
   result["splits"] = joined_splits(pieces, rows.size);
   result["t"] = joined(pieces, &FoundHits::t, wanted.t, 0);
@@ -275,6 +312,8 @@ rays: shape (..., 6), origin and direction of each ray in a row. A hit is at ori
 tmin, tmax: a number for all rays, or one for each, shape (...). tmin >= 0.
 fields: what is wanted. The others are None in the result.
 mask: 32 bits for all rays, or for each, shape (...); they meet objects that have one of them, see set_mask.
+ignore: a dict of arrays of bool by numbers of objects, a flag for each primitive: rays pass those that are
+    flagged. Primitives behind the end of an array are met.
 
 Returns Hits:
     t          float32 (...)     distance; inf for a miss
@@ -296,8 +335,8 @@ primitive) counts, of those with meshes that were added the lowest (object, prim
 
 constexpr const char* kAllHitsDoc = R"(Every hit of each ray, nearest first.
 
-A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields
-and errors are those of closest_hit; mask is one for all rays.
+A closed mesh contributes each crossing once, also at edges and corners of triangles. rays, tmin, tmax, fields,
+ignore and errors are those of closest_hit; mask is one for all rays.
 
 Returns HitLists: the fields of Hits, with the hits of ray 0 first, then those of ray 1, and so on; and
     splits     int64 (rays + 1,)  the hits of ray i are splits[i] to splits[i + 1] - 1)";
@@ -309,18 +348,19 @@ void bind_ray_queries(SceneClass& scene) {
   const Fields usual{"t", "object", "primitive", "uv", "normal"};
   const float zero = 0, infinity = std::numeric_limits<float>::infinity();
   scene.def("closest_hit", ask_closest_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "fields"_a = usual, "mask"_a = ~0u, kClosestHitDoc);
-  scene.def("any_hit", ask_any_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "mask"_a = ~0u,
-            "Whether each ray hits anything: bool (...). rays, tmin, tmax, mask and errors are those of "
-            "closest_hit.");
+            "fields"_a = usual, "mask"_a = ~0u, "ignore"_a = py::none(), kClosestHitDoc);
+  scene.def(
+      "any_hit", ask_any_hit, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(), "mask"_a = ~0u,
+      "ignore"_a = py::none(),
+      "Whether each ray hits anything: bool (...). rays, tmin, tmax, mask, ignore and errors are those of "
+      "closest_hit.");
   scene.def("count_hits", ask_count_hits, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "mask"_a = ~0u,
+            "mask"_a = ~0u, "ignore"_a = py::none(),
             "How many hits all_hits lists for each ray: uint32 (...). rays, tmin, tmax, mask and errors are "
             "those of "
             "closest_hit.");
   scene.def("all_hits", ask_all_hits, "rays"_a, "tmin"_a = zero, "tmax"_a = infinity, py::kw_only(),
-            "fields"_a = usual, "mask"_a = ~0u, kAllHitsDoc);
+            "fields"_a = usual, "mask"_a = ~0u, "ignore"_a = py::none(), kAllHitsDoc);
 }
 
 }  // namespace oktett::python

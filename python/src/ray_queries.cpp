@@ -178,43 +178,116 @@ void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits,
   HitDescriber(world, rays, hits, places, out).describe();
 }
 
-void closest_hits(const World& world, const RayRows& rays, Places places, const HitColumns& out) {
+namespace {
+
+/// Tells the hits with ignored primitives apart.
+class IgnoredHits {
+ public:
+  IgnoredHits(const World& world, const IgnoredPrimitives& ignored)
+      : accel_(*world.accel), ignored_(ignored) {}
+
+  bool holds(const Hit& hit) {
+    if (!hit.valid()) return false;
+    if (place_.accel == nullptr || hit.instance != path_) {
+      place_ = follow_path(accel_, hit.instance);
+      path_ = hit.instance;
+    }
+    const HitNames names = identify_in(place_, hit);
+    return ignored_.holds(names.user, names.primitive);
+  }
+
+ private:
+  const Accel& accel_;
+  const IgnoredPrimitives& ignored_;
+  HitPlace place_;
+  std::uint32_t path_ = kNoId;
+};
+
+/// The nearest hits, but for those with ignored primitives.
+void find_closest(const World& world, const RayBatch& rays, const IgnoredPrimitives& ignored,
+                  const HitSpan& hits) {
+  closest_hit(*world.accel, rays.span(), hits);
+  if (ignored.empty()) return;
+  IgnoredHits apart(world, ignored);
+  std::vector<Hit> all;
+  for (std::size_t i = 0; i < hits.size; ++i) {
+    if (!apart.holds(hits[i])) continue;
+    oktett::all_hits(*world.accel, rays[i], all);
+    const auto seen = std::find_if(all.begin(), all.end(), [&](const Hit& hit) { return !apart.holds(hit); });
+    hits.set(i, seen != all.end() ? *seen : Hit{});
+  }
+}
+
+/// All hits, but for those with ignored primitives.
+void find_all(const World& world, const RayBatch& rays, const IgnoredPrimitives& ignored, HitLists& found) {
+  oktett::all_hits(*world.accel, rays.span(), found);
+  if (ignored.empty()) return;
+  IgnoredHits apart(world, ignored);
+  std::size_t kept = 0, next = 0;
+  for (std::size_t ray = 0; ray + 1 < found.begin.size(); ++ray) {
+    for (; next < found.begin[ray + 1]; ++next)
+      if (!apart.holds(found.hits[next])) found.hits[kept++] = found.hits[next];
+    found.begin[ray + 1] = kept;
+  }
+  found.hits.resize(kept);
+}
+
+}  // namespace
+
+void closest_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+                  const HitColumns& out) {
   static thread_local RayBatch columns;
   static thread_local HitBatch batch;
   set_columns(rays, places, columns);
   batch.resize_uninitialized(places.size());
   const HitSpan hits = batch.span();
-  closest_hit(*world.accel, columns.span(), hits);
+  find_closest(world, columns, ignored, hits);
   if (out.t)
     for (std::size_t i = 0; i < places.size(); ++i) out.t[places[i]] = hits.t[i];
   describe_hits(world, columns.span(), hits, places, out);
 }
 
-void any_hits(const World& world, const RayRows& rays, Places places, std::uint8_t* occluded) {
+void any_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+              std::uint8_t* occluded) {
   static thread_local RayBatch columns;
+  static thread_local HitBatch batch;
   static thread_local std::vector<std::uint8_t> answers;
   set_columns(rays, places, columns);
   answers.resize(places.size());
-  any_hit(*world.accel, columns.span(), answers);
+  if (ignored.empty()) {
+    any_hit(*world.accel, columns.span(), answers);
+  } else {
+    batch.resize_uninitialized(places.size());
+    find_closest(world, columns, ignored, batch.span());
+    for (std::size_t i = 0; i < places.size(); ++i) answers[i] = batch[i].valid();
+  }
   for (std::size_t i = 0; i < places.size(); ++i) occluded[places[i]] = answers[i];
 }
 
-void count_hits(const World& world, const RayRows& rays, Places places, std::uint32_t* counts) {
+void count_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+                std::uint32_t* counts) {
   static thread_local RayBatch columns;
+  static thread_local HitLists found;
   static thread_local std::vector<std::uint32_t> answers;
   set_columns(rays, places, columns);
   answers.resize(places.size());
-  oktett::count_hits(*world.accel, columns.span(), answers);
+  if (ignored.empty()) {
+    oktett::count_hits(*world.accel, columns.span(), answers);
+  } else {
+    find_all(world, columns, ignored, found);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      answers[i] = static_cast<std::uint32_t>(found.begin[i + 1] - found.begin[i]);
+  }
   for (std::size_t i = 0; i < places.size(); ++i) counts[places[i]] = answers[i];
 }
 
-void all_hits(const World& world, const RayRows& rays, Places places, const HitColumns& wanted,
-              FoundHits& lists) {
+void all_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+              const HitColumns& wanted, FoundHits& lists) {
   static thread_local RayBatch columns, hit_rays;
   static thread_local HitBatch hits;
   static thread_local oktett::HitLists found;
   set_columns(rays, places, columns);
-  oktett::all_hits(*world.accel, columns.span(), found);
+  find_all(world, columns, ignored, found);
   const std::size_t count = found.hits.size();
   lists.begin.assign(found.begin.begin(), found.begin.end());
   hit_rays.resize_uninitialized(count), hits.resize_uninitialized(count);

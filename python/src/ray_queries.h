@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,18 @@
 namespace oktett::python {
 
 using Places = std::span<const std::size_t>;
+
+/// Primitives that rays pass as if they were not there: of each object one flag for each primitive from
+/// number 0 on; those that have none are there.
+struct IgnoredPrimitives {
+  std::map<std::uint32_t, std::span<const bool>> of_object;
+
+  bool empty() const { return of_object.empty(); }
+  bool holds(std::uint32_t object, std::uint32_t primitive) const {
+    const auto found = of_object.find(object);
+    return found != of_object.end() && primitive < found->second.size() && found->second[primitive];
+  }
+};
 
 /// Rays in rows of six floats, origin and direction, each with its interval.
 struct RayRows {
@@ -76,13 +89,16 @@ void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits,
                    const HitColumns& out);
 
 /// The nearest hits. A miss has t infinite, all ids kNoId and all else 0.
-void closest_hits(const World& world, const RayRows& rays, Places places, const HitColumns& out);
+void closest_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+                  const HitColumns& out);
 
 /// occluded[i] becomes 1 or 0.
-void any_hits(const World& world, const RayRows& rays, Places places, std::uint8_t* occluded);
+void any_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+              std::uint8_t* occluded);
 
 /// counts[i] becomes the number of hits.
-void count_hits(const World& world, const RayRows& rays, Places places, std::uint32_t* counts);
+void count_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+                std::uint32_t* counts);
 
 /// Columns of all hits of some rays.
 struct FoundHits {
@@ -94,7 +110,7 @@ struct FoundHits {
 
 /// Replaces those columns of `lists` that are not null in `wanted` by the hits of the rays, in the order of
 /// `places`.
-void all_hits(const World& world, const RayRows& rays, Places places, const HitColumns& wanted,
-              FoundHits& lists);
+void all_hits(const World& world, const RayRows& rays, Places places, const IgnoredPrimitives& ignored,
+              const HitColumns& wanted, FoundHits& lists);
 
 }  // namespace oktett::python

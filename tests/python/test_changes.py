@@ -272,3 +272,37 @@ def test_wrong_changes_are_errors():
     assert len(pickle.dumps(scene)) < 10000
     with pytest.raises(ValueError, match=f"object {number} was removed"):
         scene.enable(number)
+
+
+def test_ignored_primitives_are_passed():
+    scene = oktett.Scene()
+    rng = np.random.default_rng(7)
+    meshes = []
+    for _ in range(3):
+        vertices = rng.uniform(-1, 1, (60, 3)).astype(np.float32)
+        faces = rng.permutation(60).reshape(20, 3).astype(np.uint32)
+        meshes.append(scene.add_mesh(vertices, faces))
+    rays = np.concatenate([rng.uniform(-2, 2, (2000, 3)), rng.normal(size=(2000, 3))], axis=1)
+    flags = {meshes[0]: rng.random(20) < 0.5, meshes[2]: np.ones(12, bool)}
+    lists = scene.all_hits(rays)
+    ignored = np.zeros(len(lists.t), bool)
+    for number, of_object in flags.items():
+        inside = (lists.object == number) & (lists.primitive < len(of_object))
+        ignored[inside] = of_object[lists.primitive[inside]]
+    assert ignored.any() and not ignored.all()
+    ray = np.repeat(np.arange(2000), np.diff(lists.splits))
+    counts = np.bincount(ray[~ignored], minlength=2000)
+    np.testing.assert_array_equal(scene.count_hits(rays, ignore=flags), counts)
+    np.testing.assert_array_equal(scene.any_hit(rays, ignore=flags), counts > 0)
+    kept = scene.all_hits(rays, ignore=flags)
+    for name in ("t", "object", "primitive"):
+        np.testing.assert_array_equal(getattr(kept, name), getattr(lists, name)[~ignored])
+    np.testing.assert_array_equal(np.diff(kept.splits), counts)
+    nearest = scene.closest_hit(rays, ignore=flags)
+    first = kept.splits[:-1][counts > 0]
+    np.testing.assert_array_equal(nearest.t[counts > 0], kept.t[first])
+    np.testing.assert_array_equal(nearest.primitive[counts > 0], kept.primitive[first])
+    assert np.isinf(nearest.t[counts == 0]).all()
+    for wrong in ([1], {0: [1.0]}, {0: [[True]]}, {-1: [True]}, {"a": [True]}):
+        with pytest.raises(ValueError, match="ignore"):
+            scene.any_hit(rays, ignore=wrong)
