@@ -173,13 +173,13 @@ std::uint32_t Geometry::primitive_count() const {
   return count(RTC_BUFFER_TYPE_INDEX);
 }
 
-const Made& Geometry::made(bool with_tree) {
+const Made& Geometry::made(bool keep) {
   // What a program's function or another scene tells may have changed unnoticed.
-  if (made_version_ != shape_version_ || is_instance() || type == RTC_GEOMETRY_TYPE_USER) {
+  if (made_version_ != shape_version_ || !keep || is_instance() || type == RTC_GEOMETRY_TYPE_USER) {
     made_ = make();
     made_version_ = shape_version_;
   }
-  if (with_tree && made_.tree == nullptr && made_.mesh != nullptr && time_steps == 1) grow_tree();
+  if (keep && made_.tree == nullptr && made_.mesh != nullptr && time_steps == 1) grow_tree();
   return made_;
 }
 

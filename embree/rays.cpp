@@ -44,16 +44,18 @@ class Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
-  void closest(RTCRayHit& rayhit) {
+  void closest(RTCRayHit& rayhit, unsigned packet = 1, unsigned lane = 0) {
     RTCRay& ray = rayhit.ray;
     if (!(ray.tnear <= ray.tfar)) return;
     RayQuery query = query_for(ray, &rayhit);
+    query.packet = packet, query.lane = lane;
     keep(closest_hit(traced_, to_ray(ray), context_for(ray, query), isa_), rayhit);
   }
 
-  void any(RTCRay& ray) {
+  void any(RTCRay& ray, unsigned packet = 1, unsigned lane = 0) {
     if (!(ray.tnear <= ray.tfar)) return;
     RayQuery query = query_for(ray, nullptr);
+    query.packet = packet, query.lane = lane;
     keep(any_hit(traced_, to_ray(ray), context_for(ray, query), isa_), ray);
   }
 
@@ -394,7 +396,7 @@ void forward_closest(const RTCIntersectFunctionNArguments* arguments, RTCScene h
     {
       Call call(object_of(handle), settings_of(query));
       const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
-      call.closest(*query.rayhit);
+      call.closest(*query.rayhit, query.packet, query.lane);
     }
     if (arguments->N == 1) return;
     RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, query.lane) =
@@ -410,7 +412,7 @@ void forward_any(const RTCOccludedFunctionNArguments* arguments, RTCScene handle
     {
       Call call(object_of(handle), settings_of(query));
       const Forwarded forwarded(*query.ray, ray, *query.context, instance, index);
-      call.any(*query.ray);
+      call.any(*query.ray, query.packet, query.lane);
     }
     if (arguments->N > 1) RTCRayN_tfar(arguments->ray, arguments->N, query.lane) = query.ray->tfar;
   });

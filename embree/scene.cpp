@@ -89,13 +89,16 @@ void Scene::commit() {
   traced->device = device;
   std::vector<SceneGeometry> shapes;
   std::size_t bytes = 0;
+  // Scenes that are not said to change are read anew, as by Embree: programs change shared memory without a
+  // word.
+  const bool keep = (flags & RTC_SCENE_FLAG_DYNAMIC) != 0;
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     if (!geometries[i] || !geometries[i]->is_enabled) continue;
     Geometry& own = *geometries[i];
     if (!own.is_committed)
       fail(RTC_ERROR_INVALID_OPERATION, "geometry " + std::to_string(i) + " was not committed");
     traced->geometries.push_back(geometries[i]);
-    const Made& made = traced->made.emplace_back(own.made((flags & RTC_SCENE_FLAG_DYNAMIC) != 0));
+    const Made& made = traced->made.emplace_back(own.made(keep));
     SceneGeometry& shape = shapes.emplace_back();
     shape.shape = made.shape, shape.faces = made.faces, shape.tree = made.tree;
     shape.number = static_cast<std::uint32_t>(i), shape.mask = own.mask, shape.user = &own;

@@ -136,7 +136,7 @@ TEST(Endless, CoversEverything) {
   const Coverage c = verify_endless(options, {});
   EXPECT_EQ(c.wrong(), 0u);
   EXPECT_GT(c.rays(), 0u);
-  ASSERT_EQ(c.rows.size(), 7u);
+  ASSERT_EQ(c.rows.size(), 8u);
   EXPECT_EQ(c.rows[0].of, 88u);
 }
 
