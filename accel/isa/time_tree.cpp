@@ -6,7 +6,8 @@ namespace oktett {
 
 template <Query Q, class A>
 static Hit trace_time(const TimeTree& tree, const Ray& ray, float time, const TimeCalls& calls) {
-  return TimeTraversal<Q, A>(tree, time, calls).run(ray);
+  return tree.keys > 1 ? TimeTraversal<Q, true, A>(tree, time, calls).run(ray)
+                       : TimeTraversal<Q, false, A>(tree, time, calls).run(ray);
 }
 
 template <class A>

@@ -58,6 +58,13 @@ struct NamedHit {
 
   /// Sets the normal.
   void complete() {
+    if (own.instance == kNoId) {
+      const Column<Vec3f>& normals = scene->normals[scene->fixed->geometry_of(own.item)];
+      if (!normals.empty()) {
+        placed.hit.normal = normals[primitive];
+        return;
+      }
+    }
     const auto& shape = std::get<Geometry>(geometry->shape);
     if (const auto* const mesh = std::get_if<MeshGeometry>(&shape.shape)) {
       const TriangleMesh& own_mesh = *mesh->mesh;

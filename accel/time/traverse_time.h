@@ -6,11 +6,17 @@
 
 namespace oktett {
 
-template <Query Q, class A>
+/// `Moves`: there are several keys.
+template <Query Q, bool Moves, class A>
 class TimeTraversal {
  public:
   OKTETT_INLINE TimeTraversal(const TimeTree& tree, float time, const TimeCalls& calls)
-      : tree_(tree), calls_(calls), at_(KeyTime::of(time, tree.keys)), rest_(1 - at_.f), part_(at_.f) {}
+      : tree_(tree), calls_(calls), at_(KeyTime::of(time, tree.keys)), rest_(1 - at_.f), part_(at_.f) {
+    if (tree.nodes.empty()) return;
+    links_ = tree.nodes[0].data();
+    before_ = tree.nodes[at_.key].data();
+    if constexpr (Moves) after_ = tree.nodes[at_.key + 1].data();
+  }
 
   Hit run(const Ray& ray) {
     if (tree_.root.is_none() || r_.set(ray, tree_.bounds) == 0) return {};
@@ -20,10 +26,13 @@ class TimeTraversal {
     alignas(64) float near[BvhNode::kWidth];
     for (;;) {
       if (!ref.is_leaf()) {
-        const BvhNode& node = tree_.nodes[at_.key][ref.node_index()];
-        const NodeRef* const child = tree_.nodes[0][ref.node_index()].child;
-        const unsigned met = meet(node, ref.node_index(), near);
+        const NodeRef* const child = links_[ref.node_index()].child;
+        const unsigned met = meet(ref.node_index(), child, near);
         if (met != 0) {
+          if ((met & (met - 1)) == 0) {
+            ref = child[__builtin_ctz(met)];
+            continue;
+          }
           size = push_sorted(child, met, near, stack, size);
           ref = stack[--size].ref;
           continue;
@@ -52,15 +61,15 @@ class TimeTraversal {
   }
 
   /// The children whose boxes the ray meets, a bit each, and where it enters them.
-  OKTETT_INLINE unsigned meet(const BvhNode& node, std::uint32_t index, float* near) const {
-    const bool moves = tree_.keys > 1;
-    const BvhNode& next = moves ? tree_.nodes[at_.key + 1][index] : node;
+  OKTETT_INLINE unsigned meet(std::uint32_t index, const NodeRef* child, float* near) const {
+    const BvhNode& node = before_[index];
     F near_planes[3], far_planes[3];
     for (int k = 0; k < 3; ++k) {
       const int negative = static_cast<int>(r_.negative[k] & 1);
       const auto row = [&](int side) {
         const float* const a = node.plane[2 * k + side];
-        return moves ? between(a, next.plane[2 * k + side]) : F::load(a);
+        if constexpr (Moves) return between(a, after_[index].plane[2 * k + side]);
+        return F::load(a);
       };
       near_planes[k] = row(negative), far_planes[k] = row(negative ^ 1);
     }
@@ -72,7 +81,6 @@ class TimeTraversal {
     unsigned met = bits(n <= f);
     // Boxes that are turned inside out may be met by rays along an axis, whose distances to planes are
     // infinite.
-    const NodeRef* const child = tree_.nodes[0][index].child;
     for (unsigned m = met; m != 0; m &= m - 1)
       if (child[__builtin_ctz(m)].is_none()) met &= ~(m & -m);
     return met;
@@ -91,7 +99,8 @@ class TimeTraversal {
     const MovingCorners* const corners = &tree_.corners[std::size_t{leaf.begin} * tree_.keys + at_.key];
     const auto corner = [&](int c, int axis) {
       const float* const a = corners[0].at[c][axis];
-      return tree_.keys > 1 ? between(a, corners[1].at[c][axis]) : F::load(a);
+      if constexpr (Moves) return between(a, corners[1].at[c][axis]);
+      return F::load(a);
     };
     const auto permuted = [&](int z) {
       const auto at = [&](int c) {
@@ -123,6 +132,7 @@ class TimeTraversal {
   const TimeCalls& calls_;
   const KeyTime at_;
   const F rest_, part_;
+  const BvhNode *links_ = nullptr, *before_ = nullptr, *after_ = nullptr;
   RayState<1, A> r_;
 };
 
