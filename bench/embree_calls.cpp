@@ -379,13 +379,12 @@ std::vector<RTCRayHit> rays_at(const TriangleMesh& mesh, bool corners, int count
     const Vec3d origin = target - d * (2.5 * radius);
     const Vec3f o(origin), f(d);
     bool faces = true;
-    for (const std::uint32_t near : around[a]) {
-      if (!corners && mesh.indices[3 * std::size_t{near}] != b &&
-          mesh.indices[3 * std::size_t{near} + 1] != b && mesh.indices[3 * std::size_t{near} + 2] != b)
-        continue;
-      Vec3d n = cross(corner(near, 1) - corner(near, 0), corner(near, 2) - corner(near, 0));
-      faces &= dot(n, d) < -0.05 * length(n);
-    }
+    // Also around the ends of an edge, which rounding may bring a ray to.
+    for (const std::uint32_t end : {a, corners ? a : b})
+      for (const std::uint32_t near : around[end]) {
+        const Vec3d n = cross(corner(near, 1) - corner(near, 0), corner(near, 2) - corner(near, 0));
+        faces &= dot(n, d) < -0.05 * length(n);
+      }
     if (!faces) continue;
     rays.push_back(ray_hit(o, f, std::numeric_limits<float>::infinity()));
     reach.push_back(static_cast<float>(2.5 * radius));
