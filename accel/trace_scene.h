@@ -62,7 +62,8 @@ class HitFilter {
   /// Judges hits of one ray with one geometry in one chain of instances, in their order, until one is
   /// accepted, and returns its number: `hits.size()` if all are rejected. The accepted one may be changed, t
   /// only to less; with the geometry kNoId the ray ends there as if it met nothing, in any_hit at once. `ray`
-  /// is in the space of the innermost scene. Each hit is judged once in a query, the nearest not always first.
+  /// is in the space of the innermost scene. Each hit is judged once in a query, the nearest not always
+  /// first.
   virtual std::size_t judge(const Ray& ray, const RayContext& context, std::span<SceneHit> hits) const = 0;
 };
 
