@@ -61,41 +61,29 @@ class Call {
 
   /// Rays side by side. Those of a packet of `packet` have the numbers `lanes` in it.
   void closest(std::span<RTCRayHit> rays, unsigned packet = 1, const unsigned* lanes = nullptr) {
-    Batch batch;
-    SceneHit hits[kBatch];
-    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
-      const std::span<RTCRayHit> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-      for (std::size_t i = 0; i < part.size(); ++i)
-        batch.set(i, *this, part[i].ray, &part[i], packet, packet > 1 ? lanes[begin + i] : 0);
-      closest_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(hits, part.size()),
-                  isa_);
-      for (std::size_t i = 0; i < part.size(); ++i) keep(hits[i], part[i]);
-    }
+    if (rays.size() <= kMostPacket) return closest<kMostPacket>(rays, packet, lanes);
+    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch)
+      closest<kBatch>(rays.subspan(begin, std::min(kBatch, rays.size() - begin)), 1, nullptr);
   }
 
   void any(std::span<RTCRay> rays, unsigned packet = 1, const unsigned* lanes = nullptr) {
-    Batch batch;
-    std::uint8_t occluded[kBatch];
-    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
-      const std::span<RTCRay> part = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-      for (std::size_t i = 0; i < part.size(); ++i)
-        batch.set(i, *this, part[i], nullptr, packet, packet > 1 ? lanes[begin + i] : 0);
-      any_hit(traced_, batch.rays(part.size()), batch.contexts(part.size()), std::span(occluded, part.size()),
-              isa_);
-      for (std::size_t i = 0; i < part.size(); ++i) keep(occluded[i] != 0, part[i]);
-    }
+    if (rays.size() <= kMostPacket) return any<kMostPacket>(rays, packet, lanes);
+    for (std::size_t begin = 0; begin < rays.size(); begin += kBatch)
+      any<kBatch>(rays.subspan(begin, std::min(kBatch, rays.size() - begin)), 1, nullptr);
   }
 
-  /// So many rays go side by side.
+  /// So many rays of a stream go side by side.
   static constexpr std::size_t kBatch = 64;
 
  private:
+  /// Up to N rays.
+  template <std::size_t N>
   class Batch {
    public:
     void set(std::size_t i, const Call& call, RTCRay& ray, RTCRayHit* rayhit, unsigned packet,
-             unsigned lane) {
+             const unsigned* lanes) {
       queries_[i] = call.query_for(ray, rayhit);
-      queries_[i].packet = packet, queries_[i].lane = lane;
+      queries_[i].packet = packet, queries_[i].lane = packet > 1 ? lanes[i] : 0;
       contexts_[i] = call.context_for(ray, queries_[i]);
       rays_[i] = to_ray(ray);
       // The ray that hits nothing.
@@ -105,10 +93,30 @@ class Call {
     std::span<const RayContext> contexts(std::size_t count) const { return {contexts_, count}; }
 
    private:
-    Ray rays_[kBatch];
-    RayContext contexts_[kBatch];
-    RayQuery queries_[kBatch];
+    Ray rays_[N];
+    RayContext contexts_[N];
+    RayQuery queries_[N];
   };
+
+  template <std::size_t N>
+  void closest(std::span<RTCRayHit> rays, unsigned packet, const unsigned* lanes) {
+    Batch<N> batch;
+    SceneHit hits[N];
+    const std::size_t count = rays.size();
+    for (std::size_t i = 0; i < count; ++i) batch.set(i, *this, rays[i].ray, &rays[i], packet, lanes);
+    closest_hit(traced_, batch.rays(count), batch.contexts(count), std::span(hits, count), isa_);
+    for (std::size_t i = 0; i < count; ++i) keep(hits[i], rays[i]);
+  }
+
+  template <std::size_t N>
+  void any(std::span<RTCRay> rays, unsigned packet, const unsigned* lanes) {
+    Batch<N> batch;
+    std::uint8_t occluded[N];
+    const std::size_t count = rays.size();
+    for (std::size_t i = 0; i < count; ++i) batch.set(i, *this, rays[i], nullptr, packet, lanes);
+    any_hit(traced_, batch.rays(count), batch.contexts(count), std::span(occluded, count), isa_);
+    for (std::size_t i = 0; i < count; ++i) keep(occluded[i] != 0, rays[i]);
+  }
 
   static void keep(bool occluded, RTCRay& ray) {
     if (occluded) ray.tfar = -std::numeric_limits<float>::infinity();
@@ -151,11 +159,11 @@ unsigned packet_of(unsigned n) { return n <= kMostPacket ? n : 1; }
 void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned n) {
   RTCRayN* const rays = RTCRayHitN_RayN(rayhits, n);
   RTCHitN* const hits = RTCRayHitN_HitN(rayhits, n);
-  RTCRayHit batch[Call::kBatch];
-  unsigned number[Call::kBatch];
+  RTCRayHit batch[kMostPacket];
+  unsigned number[kMostPacket];
   for (unsigned next = 0; next < n;) {
     std::size_t count = 0;
-    for (; next < n && count < Call::kBatch; ++next) {
+    for (; next < n && count < kMostPacket; ++next) {
       if (valid != nullptr && valid[next] != -1) continue;
       load(rays, n, next, batch[count].ray), load(hits, n, next, batch[count].hit);
       number[count++] = next;
@@ -169,11 +177,11 @@ void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned
 }
 
 void any_columns(Call& call, const int* valid, RTCRayN* rays, unsigned n) {
-  RTCRay batch[Call::kBatch];
-  unsigned number[Call::kBatch];
+  RTCRay batch[kMostPacket];
+  unsigned number[kMostPacket];
   for (unsigned next = 0; next < n;) {
     std::size_t count = 0;
-    for (; next < n && count < Call::kBatch; ++next) {
+    for (; next < n && count < kMostPacket; ++next) {
       if (valid != nullptr && valid[next] != -1) continue;
       load(rays, n, next, batch[count]);
       number[count++] = next;

@@ -425,6 +425,9 @@ void for_each_ray(std::size_t count, Function&& f) {
   for_each_task(piece_count(count), piece);
 }
 
+/// So few rays are traced faster one after the other than as a batch.
+constexpr std::size_t kFewRays = 8;
+
 /// The hits of rays with what does not move.
 void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<SceneHit> hits, Isa isa) {
   for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
@@ -452,7 +455,8 @@ bool any_hit(const TraceScene& scene, const Ray& ray, const RayContext& context,
 void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
                  std::span<SceneHit> hits, Isa isa) {
   check_sizes(rays.size(), contexts.size(), hits.size(), "closest_hit");
-  if (is_plain<Query::closest>(scene, contexts)) return plain_hits(scene, rays, hits, isa);
+  if (rays.size() > kFewRays && is_plain<Query::closest>(scene, contexts))
+    return plain_hits(scene, rays, hits, isa);
   for_each_ray(rays.size(), [&](std::size_t i) {
     hits[i] = closest_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
   });
@@ -461,7 +465,8 @@ void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<c
 void any_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
              std::span<std::uint8_t> occluded, Isa isa) {
   check_sizes(rays.size(), contexts.size(), occluded.size(), "any_hit");
-  if (is_plain<Query::any>(scene, contexts)) return any_hit(*scene.fixed, rays, occluded, isa);
+  if (rays.size() > kFewRays && is_plain<Query::any>(scene, contexts))
+    return any_hit(*scene.fixed, rays, occluded, isa);
   for_each_ray(rays.size(), [&](std::size_t i) {
     occluded[i] = any_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
   });
