@@ -1,7 +1,6 @@
 #include "verify/checks/changes.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
+#include "verify/checks/run_cases.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
@@ -330,16 +330,9 @@ void add(ChangesTally& sum, const ChangesTally& t) {
 }  // namespace
 
 ChangesTally verify_changes(std::uint64_t count, const std::vector<Isa>& isas, std::uint64_t first) {
-  std::vector<ChangesTally> tallies(count);
-  tbb::parallel_for(std::size_t{0}, tallies.size(), [&](std::size_t k) {
-    ChangesTally& tally = tallies[k];
-    tally.sequence = first + k;
-    Changes(tally.sequence, isas, tally).run();
-    if (!tally.failure.empty()) tally.failure = fmt::format("sequence {}: {}", tally.sequence, tally.failure);
-  });
-  ChangesTally sum;
-  for (const ChangesTally& t : tallies) add(sum, t);
-  return sum;
+  return run_cases(
+      count, first, &ChangesTally::sequence, "sequence",
+      [&](ChangesTally& tally) { Changes(tally.sequence, isas, tally).run(); }, add);
 }
 
 }  // namespace oktett

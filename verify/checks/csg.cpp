@@ -1,7 +1,6 @@
 #include "verify/checks/csg.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <functional>
@@ -14,6 +13,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
+#include "verify/checks/run_cases.h"
 #include "verify/oracles/exact.h"
 #include "verify/oracles/mesh.h"
 
@@ -303,16 +303,9 @@ void add(CsgTally& sum, const CsgTally& t) {
 
 CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas, std::uint64_t first) {
   const std::size_t trees = (rays + kRaysPerTree - 1) / kRaysPerTree;
-  std::vector<CsgTally> tallies(trees);
-  tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t k) {
-    CsgTally& tally = tallies[k];
-    tally.tree = first + k;
-    CsgChecker(tally.tree, isas, tally).run();
-    if (!tally.failure.empty()) tally.failure = fmt::format("tree {}: {}", tally.tree, tally.failure);
-  });
-  CsgTally sum;
-  for (const CsgTally& t : tallies) add(sum, t);
-  return sum;
+  return run_cases(
+      trees, first, &CsgTally::tree, "tree",
+      [&](CsgTally& tally) { CsgChecker(tally.tree, isas, tally).run(); }, add);
 }
 
 }  // namespace oktett

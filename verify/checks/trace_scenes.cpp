@@ -1,7 +1,6 @@
 #include "verify/checks/trace_scenes.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +15,7 @@
 #include "core/random.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/kernels.h"
+#include "verify/checks/run_cases.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
@@ -563,16 +563,9 @@ void add(TraceScenesTally& sum, const TraceScenesTally& t) {
 }  // namespace
 
 TraceScenesTally verify_trace_scenes(std::uint64_t count, const std::vector<Isa>& isas, std::uint64_t first) {
-  std::vector<TraceScenesTally> tallies(count);
-  tbb::parallel_for(std::size_t{0}, tallies.size(), [&](std::size_t k) {
-    TraceScenesTally& tally = tallies[k];
-    tally.scene = first + k;
-    RandomScene(tally.scene, isas, tally).run();
-    if (!tally.failure.empty()) tally.failure = fmt::format("scene {}: {}", tally.scene, tally.failure);
-  });
-  TraceScenesTally sum;
-  for (const TraceScenesTally& t : tallies) add(sum, t);
-  return sum;
+  return run_cases(
+      count, first, &TraceScenesTally::scene, "scene",
+      [&](TraceScenesTally& tally) { RandomScene(tally.scene, isas, tally).run(); }, add);
 }
 
 }  // namespace oktett
