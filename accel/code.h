@@ -4,6 +4,7 @@
 /// holds no code for the set.
 
 #include "accel/closest.h"
+#include "accel/hit_judge.h"
 #include "accel/hit_sink.h"
 #include "accel/interaction_block.h"
 #include "accel/query.h"
@@ -26,10 +27,22 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
 template <Query Q, class A>
 Hit trace_one(const Accel& accel, const Ray& ray);
 
+/// The nearest hit of one ray, and the normal there.
+template <class A>
+HitWithNormal trace_one_with_normal(const Accel& accel, const Ray& ray);
+
+/// Lets `judge` judge the hits of one ray. Returns whether one counts. For Query::any, the first that counts
+/// ends the ray.
+template <Query Q, class A>
+bool judge_one(const Accel& accel, const Ray& ray, HitJudge& judge);
+
 /// The queries of accel/accel.h.
 struct TraceCode {
   Hit (*closest_hit_one)(const Accel&, const Ray&);
   bool (*any_hit_one)(const Accel&, const Ray&);
+  HitWithNormal (*closest_hit_with_normal)(const Accel&, const Ray&);
+  bool (*judge_closest_hit)(const Accel&, const Ray&, HitJudge&);
+  bool (*judge_any_hit)(const Accel&, const Ray&, HitJudge&);
   void (*closest_hit)(const Accel&, const RaySpan&, const HitSink<Query::closest>&, TraceMode);
   void (*any_hit)(const Accel&, const RaySpan&, const HitSink<Query::any>&, TraceMode);
   void (*all_hits_one)(const Accel&, const Ray&, HitList&);

@@ -23,6 +23,9 @@ bool is_triangle(const Accel& accel, std::uint32_t item);
 /// Whether the transform of a mesh mirrors it, which reverses the winding of its triangles.
 bool is_mirrored(const Accel& accel, std::uint32_t item);
 
+/// The order in which hits are listed and count: by t, then by (instance, item).
+bool listed_before(const Hit& a, const Hit& b);
+
 /// A hit, and its turn: -1 if the ray enters a solid there, 1 if it leaves it; 0 for shapes without an
 /// inside.
 struct Crossing {

@@ -156,8 +156,7 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
   }
 }
 
-/// The order in which hits are listed: by t, then by (instance, item).
-static bool listed_before(const Hit& a, const Hit& b) {
+bool listed_before(const Hit& a, const Hit& b) {
   if (a.t != b.t) return a.t < b.t;
   // Adding one puts "no instance" first.
   if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;

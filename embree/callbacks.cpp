@@ -15,25 +15,35 @@ std::uint32_t instance_count(const QueryContext& context) {
 
 namespace {
 
-/// Shows the program's ray and context as they are at a place in a scene, while it lives.
+/// Shows the program's ray and context as they are at a place in a scene, while it lives. Outside of
+/// instances no more than the end of the ray is another.
 class Shown {
  public:
   Shown(RayQuery& query, const Ray& ray, const InstanceChain& chain)
-      : query_(query), ray_(*query.ray), context_(*query.context) {
+      : query_(query), is_inside_(chain.count > 0) {
     RTCRay& shown = *query.ray;
-    shown.org_x = ray.origin.x, shown.org_y = ray.origin.y, shown.org_z = ray.origin.z;
-    shown.dir_x = ray.direction.x, shown.dir_y = ray.direction.y, shown.dir_z = ray.direction.z;
+    tfar_ = shown.tfar;
+    if (is_inside_) {
+      ray_ = shown, context_ = *query.context;
+      shown.org_x = ray.origin.x, shown.org_y = ray.origin.y, shown.org_z = ray.origin.z;
+      shown.dir_x = ray.direction.x, shown.dir_y = ray.direction.y, shown.dir_z = ray.direction.z;
+      set_instances(*query.context, chain, instance_count(context_));
+    }
     shown.tfar = ray.tmax;
-    if (chain.count > 0) set_instances(*query.context, chain, instance_count(context_));
   }
-  ~Shown() { *query_.ray = ray_, *query_.context = context_; }
+  ~Shown() {
+    if (is_inside_) *query_.ray = ray_, *query_.context = context_;
+    query_.ray->tfar = tfar_;
+  }
   Shown(const Shown&) = delete;
   Shown& operator=(const Shown&) = delete;
 
  private:
   RayQuery& query_;
-  const RTCRay ray_;
-  const QueryContext context_;
+  const bool is_inside_;
+  float tfar_;
+  RTCRay ray_;            ///< as the program has it; set inside of instances
+  QueryContext context_;  ///< likewise
 };
 
 /// The ray of a query and a hit as functions of the program are given them: themselves, or as one lane of a

@@ -6,6 +6,7 @@ template void trace<Query::any, OKTETT_ISA>(const Accel&, const RaySpan&, const 
                                             TraceMode);
 
 template Hit trace_one<Query::any, OKTETT_ISA>(const Accel&, const Ray&);
+template bool judge_one<Query::any, OKTETT_ISA>(const Accel&, const Ray&, HitJudge&);
 
 // Packets that other units call.
 template void trace_packet<Query::any, kChunkRays<OKTETT_ISA>, OKTETT_ISA>(

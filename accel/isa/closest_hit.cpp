@@ -6,6 +6,8 @@ template void trace<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, co
                                                 TraceMode);
 
 template Hit trace_one<Query::closest, OKTETT_ISA>(const Accel&, const Ray&);
+template HitWithNormal trace_one_with_normal<OKTETT_ISA>(const Accel&, const Ray&);
+template bool judge_one<Query::closest, OKTETT_ISA>(const Accel&, const Ray&, HitJudge&);
 
 // Packets that other units call.
 template void trace_packet<Query::closest, kChunkRays<OKTETT_ISA>, OKTETT_ISA>(

@@ -32,6 +32,9 @@ const TraceCode& trace_code() {
   static constexpr TraceCode code = {
       trace_one<Query::closest, A>,
       [](const Accel& accel, const Ray& ray) { return trace_one<Query::any, A>(accel, ray).valid(); },
+      trace_one_with_normal<A>,
+      judge_one<Query::closest, A>,
+      judge_one<Query::any, A>,
       trace<Query::closest, A>,
       trace<Query::any, A>,
       trace_all_hits<A>,

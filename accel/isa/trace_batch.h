@@ -9,11 +9,23 @@
 namespace oktett {
 
 template <Query Q, class A>
+OKTETT_INLINE HitWithNormal trace_alone(const Accel& accel, const Ray& ray) {
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    NoJudge all;
+    SoloTraversal<Q, A> way(accel, ray, all);
+    if (OKTETT_LIKELY(way.is_tame())) return way.run();
+  }
+  return {trace_exact<Q, A>(accel, ray)};
+}
+
+template <Query Q, class A>
 OKTETT_NOINLINE Hit trace_one(const Accel& accel, const Ray& ray) {
-  if constexpr (std::is_same_v<A, ScalarIsa>)
-    return trace_exact<Q, A>(accel, ray);
-  else
-    return SoloTraversal<Q, A>(accel, ray).run();
+  return trace_alone<Q, A>(accel, ray);
+}
+
+template <class A>
+OKTETT_NOINLINE HitWithNormal trace_one_with_normal(const Accel& accel, const Ray& ray) {
+  return trace_alone<Query::closest, A>(accel, ray);
 }
 
 /// All rays, one after the other.

@@ -158,6 +158,7 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   BuildOptions plain = options;
   plain.mask = ~0u;
   scene.fixed = build_accel(std::move(fixed), plain);
+  scene.has_pieces |= scene.fixed->pieces;
   scene.bounds.grow(scene.fixed->bounds);
   scene.normals.resize(scene.fixed->geometries.size());
   for (std::size_t g = 0; g < scene.normals.size(); ++g) {
@@ -234,6 +235,7 @@ void note_children(TraceScene& scene) {
     if (const auto* const fixed = std::get_if<Geometry>(&g.shape))
       scene.has_simple_hits &= std::holds_alternative<MeshGeometry>(fixed->shape) ||
                                std::holds_alternative<SpheresShape>(fixed->shape);
+    scene.has_pieces |= g.tree != nullptr && g.tree->pieces;
     scene.has_masks |= g.mask != ~0u;
     scene.has_closest_filters |= g.closest_filter != nullptr,
         scene.has_any_filters |= g.any_filter != nullptr;
@@ -242,6 +244,7 @@ void note_children(TraceScene& scene) {
       if (scene.levels > InstanceChain::kMost)
         refuse(g, "instances are nested deeper than " + std::to_string(InstanceChain::kMost) + " levels");
       scene.has_simple_hits &= child.has_simple_hits;
+      scene.has_pieces |= child.has_pieces;
       scene.has_masks |= child.has_masks;
       scene.has_closest_filters |= child.has_closest_filters, scene.has_any_filters |= child.has_any_filters;
     });

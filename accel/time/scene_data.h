@@ -7,6 +7,7 @@
 
 #include "accel/time/time_tree.h"
 #include "accel/trace_scene.h"
+#include "kernels/triangle/triangle.h"
 
 namespace oktett {
 
@@ -46,9 +47,6 @@ struct MovingPart {
   float own_time(float time) const { return begin == 0 && end == 1 ? time : (time - begin) / (end - begin); }
 };
 
-/// (b - a) x (c - a).
-inline Vec3f triangle_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cross(b - a, c - a); }
-
 class TraceScene {
  public:
   std::vector<SceneGeometry> geometries;
@@ -63,6 +61,7 @@ class TraceScene {
   std::uint32_t levels = 0;  ///< of instances
   // Here or in a scene inside:
   bool has_simple_hits = true;  ///< all that does not move are triangles and spheres
+  bool has_pieces = false;      ///< a triangle may stand in several leaves of what does not move
   bool has_masks = false;       ///< a mask is not ~0
   bool has_closest_filters = false, has_any_filters = false;
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "accel/accel_data.h"
 #include "accel/batch_pieces.h"
+#include "accel/code.h"
 #include "accel/hit_place.h"
 #include "accel/hit_sink.h"
 #include "accel/time/instance_motion.h"
@@ -52,12 +54,17 @@ struct NamedHit {
   const TraceScene* scene;
   const SceneGeometry* geometry;
   Ray ray;                  ///< in the innermost scene, as its own structure traced it
-  Hit own;                  ///< in the fixed structure of the innermost scene
+  HitWithNormal own;        ///< in the fixed structure of the innermost scene
   std::uint32_t primitive;  ///< in the geometry, before faces are named
   bool is_seen = true;      ///< by the masks of the geometry and of all instances
 
   /// Sets the normal.
   void complete() {
+    const auto& shape = std::get<Geometry>(geometry->shape);
+    if (own.has_normal && shape.transform.is_identity()) {
+      placed.hit.normal = own.normal;
+      return;
+    }
     if (own.instance == kNoId) {
       const Column<Vec3f>& normals = scene->normals[scene->fixed->geometry_of(own.item)];
       if (!normals.empty()) {
@@ -65,7 +72,6 @@ struct NamedHit {
         return;
       }
     }
-    const auto& shape = std::get<Geometry>(geometry->shape);
     if (const auto* const mesh = std::get_if<MeshGeometry>(&shape.shape)) {
       const TriangleMesh& own_mesh = *mesh->mesh;
       const auto corner = [&](std::size_t k) {
@@ -81,7 +87,7 @@ struct NamedHit {
 };
 
 NamedHit name_hit(const TraceScene& scene, const Ray& ray, std::uint32_t mask, const InstanceChain& chain,
-                  const Hit& hit) {
+                  const HitWithNormal& hit) {
   NamedHit n;
   n.scene = &scene, n.ray = ray, n.own = hit;
   n.placed.hit.chain = chain;
@@ -176,7 +182,13 @@ class SceneTracer {
       best_.hit.t = ray_.tmax;
       return;
     }
-    const Hit first = closest_hit(*scene_.fixed, ray_, isa_);
+    if (judges_ && scene_.has_simple_hits) {
+      OnTheWay judge(*this);
+      const TraceCode& code = trace_code(isa_);
+      (Q == Query::closest ? code.judge_closest_hit : code.judge_any_hit)(*scene_.fixed, ray_, judge);
+      return;
+    }
+    const HitWithNormal first = trace_code(isa_).closest_hit_with_normal(*scene_.fixed, ray_);
     if (!first.valid()) return;
     NamedHit named = name_hit(scene_, ray_, context_.mask, chain_, first);
     if (!judges_) {
@@ -185,45 +197,72 @@ class SceneTracer {
       return;
     }
     if (decide(named)) return;
-    // Most rays are rejected a few times at most: they go on behind each hit. Of the others all hits are
-    // found at once, as with surfaces whose crossings depend on each other.
-    Ray rest = ray_;
-    Hit last = first;
+    // Crossings of one surface may depend on each other, so all are found at once.
     std::vector<Hit> hits;
-    for (int tries = scene_.has_simple_hits ? 0 : kFewRejected; tries < kFewRejected; ++tries) {
-      rest.tmin = std::nextafter(last.t, 0.0f), rest.tmax = last.t;
-      all_hits(*scene_.fixed, rest, hits, isa_);
-      if (decide_behind(last, hits)) return;
-      rest.tmin = last.t, rest.tmax = ray_.tmax;
-      last = closest_hit(*scene_.fixed, rest, isa_);
-      if (!last.valid()) return;
-      named = name_hit(scene_, ray_, context_.mask, chain_, last);
-      if (decide(named)) return;
-    }
     all_hits(*scene_.fixed, ray_, hits, isa_);
-    decide_behind(last, hits);
+    const auto is_rest = [&](const Hit& hit) {
+      return hit.t > first.t || (hit.t == first.t && !(hit == static_cast<const Hit&>(first)));
+    };
+    decide_in_order(std::span(hits).subspan(
+        static_cast<std::size_t>(std::find_if(hits.begin(), hits.end(), is_rest) - hits.begin())));
   }
 
-  static constexpr int kFewRejected = 3;
+  /// Judges hits while the ray is on its way.
+  class OnTheWay final : public HitJudge {
+   public:
+    explicit OnTheWay(SceneTracer& tracer) : tracer_(tracer) { nearest_.t = tracer.ray_.tmax; }
+    bool offer(HitWithNormal* hits, int count) override {
+      int left = 0;
+      for (int i = 0; i < count; ++i)
+        if (may_count(hits[i])) hits[left++] = hits[i];
+      if (left > 1) std::sort(hits, hits + left, listed_before);
+      const std::size_t accepted =
+          tracer_.decide_in_order(std::span<const HitWithNormal>(hits, static_cast<std::size_t>(left)));
+      if (tracer_.scene_.has_pieces) rejected_.insert(hits, hits + accepted);
+      if (accepted == static_cast<std::size_t>(left)) return false;
+      nearest_ = hits[accepted];
+      nearest_.t = tracer_.best_.hit.t;
+      return true;
+    }
+    float end() const override { return nearest_.t; }
+    HitList& scratch() override { return list_; }
 
-  /// Keeps the first hit behind `last` that counts, of a list in order. Returns whether there is one.
-  bool decide_behind(const Hit& last, const std::vector<Hit>& hits) {
-    const auto is_rest = [&](const Hit& hit) {
-      return hit.t > last.t || (hit.t == last.t && !(hit == last));
-    };
+   private:
+    /// Whether it is the nearest so far, and was not judged before: a triangle may stand in several leaves.
+    bool may_count(const Hit& hit) const {
+      if (nearest_.valid() ? !listed_before(hit, nearest_) : hit.t > nearest_.t) return false;
+      return rejected_.empty() || !rejected_.contains(hit);
+    }
+
+    SceneTracer& tracer_;
+    Hit nearest_;  ///< that counts
+    std::vector<Crossing> crossings_;
+    HitList list_{crossings_};
+    std::set<Hit, decltype(&listed_before)> rejected_{listed_before};
+  };
+
+  /// Keeps the first hit that counts, of a list in order, and returns its number, or how many there are.
+  template <class AnyHit>
+  std::size_t decide_in_order(std::span<AnyHit> hits) {
     std::vector<NamedHit> group;
-    for (auto next = std::find_if(hits.begin(), hits.end(), is_rest); next != hits.end();) {
+    for (std::size_t i = 0; i < hits.size();) {
+      const std::size_t first = i;
+      NamedHit named = name_hit(scene_, ray_, context_.mask, chain_, {hits[i++]});
       group.clear();
-      for (; next != hits.end(); ++next) {
-        NamedHit more = name_hit(scene_, ray_, context_.mask, chain_, *next);
-        if (!group.empty() && (more.geometry != group[0].geometry ||
-                               !same_chain(more.placed.hit.chain, group[0].placed.hit.chain)))
+      for (; i < hits.size(); ++i) {
+        const NamedHit more = name_hit(scene_, ray_, context_.mask, chain_, {hits[i]});
+        if (more.geometry != named.geometry || !same_chain(more.placed.hit.chain, named.placed.hit.chain))
           break;
+        if (group.empty()) group.push_back(named);
         group.push_back(more);
       }
-      if (decide(group)) return true;
+      if (group.empty()) {
+        if (decide(named)) return first;
+      } else if (const std::size_t k = decide(group); k < group.size()) {
+        return first + k;
+      }
     }
-    return false;
+    return hits.size();
   }
 
   /// Whether a hit counts, which is kept then.
@@ -237,18 +276,19 @@ class SceneTracer {
   }
 
   /// The same for several hits, all with one geometry in one chain, of which the first that counts is kept.
-  bool decide(std::span<NamedHit> group) {
-    if (!group[0].is_seen) return false;
+  /// Returns its number, or how many there are.
+  std::size_t decide(std::span<NamedHit> group) {
+    if (!group[0].is_seen) return group.size();
     std::vector<SceneHit> hits;
     for (NamedHit& named : group) {
       if (Q == Query::closest || filters_) named.complete();
       hits.push_back(named.placed.hit);
     }
     const SceneHit* const accepted = judge(*group[0].geometry, group[0].ray, hits);
-    if (accepted == nullptr) return false;
+    if (accepted == nullptr) return group.size();
     best_ = group[0].placed;
     best_.hit = *accepted;
-    return true;
+    return static_cast<std::size_t>(accepted - hits.data());
   }
 
   // ---- What moves.
@@ -395,7 +435,7 @@ bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
 }
 
 /// Names a hit of the fixed structure.
-SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const Hit& hit) {
+SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const HitWithNormal& hit) {
   if (!hit.valid()) return {};
   const Accel& accel = *scene.fixed;
   if (hit.instance == kNoId) {
@@ -404,7 +444,7 @@ SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const Hit& hit) {
       SceneHit out;
       out.t = hit.t, out.u = hit.u, out.v = hit.v;
       const std::uint32_t triangle = hit.item - accel.first_item[g];
-      out.normal = normals[triangle];
+      out.normal = hit.has_normal ? hit.normal : normals[triangle];
       name_face(out, scene.geometries[scene.fixed_place[g].geometry], triangle);
       return out;
     }
@@ -435,7 +475,7 @@ void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<Sc
     found.resize_uninitialized(piece.size);
     closest_hit(*scene.fixed, piece, found.span(), isa);
     for (std::size_t i = 0; i < piece.size; ++i)
-      hits[begin + i] = plain_hit(scene, rays[begin + i], found[i]);
+      hits[begin + i] = plain_hit(scene, rays[begin + i], {found[i]});
   });
 }
 
@@ -443,7 +483,7 @@ void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<Sc
 
 SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
   if (is_plain<Query::closest>(scene, context))
-    return plain_hit(scene, ray, closest_hit(*scene.fixed, ray, isa));
+    return plain_hit(scene, ray, trace_code(isa).closest_hit_with_normal(*scene.fixed, ray));
   return trace<Query::closest>(scene, ray, context, isa);
 }
 

@@ -122,4 +122,9 @@ OKTETT_INLINE TriangleLanes<F> load_triangles(const TriangleBlock& b, int first 
   return {corner(0), corner(1), corner(2)};
 }
 
+/// (b - a) x (c - a).
+OKTETT_INLINE Vec3f triangle_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  return cross(b - a, c - a);
+}
+
 }  // namespace oktett

@@ -1,12 +1,14 @@
 #pragma once
 /// \file One ray by itself through the tree, with the float arithmetic of interleaved rays: triangles are
-/// classified, and the nearest hit is decided when the ray is finished.
+/// classified, and the nearest hit is decided when the ray is finished, or where hits are judged, at once.
 
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 
+#include "accel/hit_judge.h"
+#include "accel/traverse/all_hits.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/single.h"
 #include "core/simd_order.h"
@@ -91,11 +93,40 @@ class Siblings<Query::any, A> {
   NodeRef next_;
 };
 
-/// A ray and its way through a tree.
+/// The judge of what is outside of an instance, for hits inside.
+template <class Instance, class A>
+class InsideJudge final : public HitJudge {
+ public:
+  InsideJudge(HitJudge& outer, const Instance& instance) : outer_(outer), instance_(instance) {}
+  bool offer(HitWithNormal* hits, int count) override {
+    for (int i = 0; i < count; ++i) hits[i].instance = outer_path(instance_, hits[i].instance);
+    return outer_.offer(hits, count);
+  }
+  float end() const override { return outer_.end(); }
+  HitList& scratch() override { return outer_.scratch(); }
+
+ private:
+  HitJudge& outer_;
+  const Instance& instance_;
+};
+
+/// Offers hits of a list one after the other. Returns whether one counts.
 template <Query Q, class A>
+bool offer_list(HitList& list, HitJudge& judge) {
+  bool counts = false;
+  for (std::size_t i = 0; i < list.size() && !(Q == Query::any && counts); ++i) {
+    HitWithNormal hit{list[i].hit};
+    counts |= hit.t <= judge.end() && judge.offer(&hit, 1);
+  }
+  return counts;
+}
+
+/// A ray and its way through a tree. `Judge` is HitJudge or NoJudge.
+template <Query Q, class A, class Judge = NoJudge>
 class SoloTraversal {
  public:
-  OKTETT_INLINE SoloTraversal(const Accel& accel, const Ray& ray) : accel_(accel), ray_(ray) {
+  OKTETT_INLINE SoloTraversal(const Accel& accel, const Ray& ray, Judge& judge)
+      : accel_(accel), ray_(ray), judge_(judge) {
     const auto lanes = [](const Vec3f& p) { return V::of(p.x, p.y, p.z, 0.0f); };
     const V o = lanes(ray.origin), unflushed = lanes(ray.direction), big(std::numeric_limits<float>::max());
     const V d = select(abs(unflushed) < V(std::numeric_limits<float>::min()), V(0.0f), unflushed);
@@ -120,23 +151,49 @@ class SoloTraversal {
     tmax_ = hit_lo_ = ray.tmax;
   }
 
-  OKTETT_INLINE Hit run() {
-    if (OKTETT_UNLIKELY(!tame_)) return trace_exact<Q, A>(accel_, ray_);
+  /// Whether the float arithmetic suffices for the ray; only then it may run.
+  OKTETT_INLINE bool is_tame() const { return tame_; }
+
+  /// What the ray hits; if hits are judged, no more than whether one counts.
+  OKTETT_INLINE HitWithNormal run() {
     if (OKTETT_LIKELY(accel_.unbounded.empty()) || !unbounded()) traverse();
     if (candidate_ == kNoCandidate) return {};
-    if constexpr (Q == Query::any) return {ray_.tmax, 0, 0, 0, kNoId};
-    return candidate_ == kDecidedHit ? state_.hit(0) : decide();
+    if constexpr (Q == Query::any || kJudged) return {{ray_.tmax, 0, 0, 0, kNoId}};
+    if (candidate_ != kDecidedHit) return decide(candidate_);
+    return {state_.hit(0), inside_.normal, inside_.has_normal && state_.path[0] != kNoId};
   }
 
  private:
   static constexpr int kBlock = TriangleBlock::kSize;
+  static constexpr bool kJudged = !std::is_same_v<Judge, NoJudge>;
   using F = Simd<float, kBlock, A>;
   using V = Simd<float, 4, A>;
 
   OKTETT_NOINLINE bool unbounded() {
-    for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, exact_state());
-    adopt();
+    for (const LeafEntry& leaf : accel_.unbounded) table_leaf(leaf);
     return found();
+  }
+
+  OKTETT_INLINE void table_leaf(const LeafEntry& leaf) {
+    if constexpr (kJudged) return offer_leaf(leaf);
+    if (Q == Query::closest && holds_instances(leaf.kind))
+      enter(leaf);
+    else
+      table_leaf_single<Q>(accel_, leaf, exact_state());
+    adopt();
+  }
+
+  /// Goes through instances for the nearest hit.
+  OKTETT_NOINLINE void enter(const LeafEntry& leaf) {
+    RayState<1, A>& state = exact_state();
+    each_instance(accel_, leaf, [&]<class Instance>(const Instance& instance, const Accel& child) {
+      const HitWithNormal hit =
+          trace_one_with_normal<A>(child, ray_inside<Instance, A>(instance, load_rays(state)));
+      accept_inside(instance, state, hit);
+      if (hit.valid() && state.item[0] == hit.item && state.path[0] == outer_path(instance, hit.instance))
+        inside_ = hit;
+      return true;
+    });
   }
 
   OKTETT_INLINE bool found() const { return Q == Query::any && candidate_ == kDecidedHit; }
@@ -189,8 +246,7 @@ class SoloTraversal {
           limit = tmax_ + slack_[0];
         }
       } else {
-        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state());
-        adopt();
+        table_leaf(accel_.leaves[ref.table_index()]);
         if (found()) return;
         limit = tmax_ + slack_[0];
       }
@@ -208,8 +264,52 @@ class SoloTraversal {
                                       filter_triangle(load_triangles<F>(accel_.blocks[ref.block()])));
     const unsigned present = (2u << (ref.triangle_count() - 1)) - 1;
     const unsigned maybe = bits(maybe_hit(guess, F(tmax_))) & present;
-    return OKTETT_UNLIKELY(maybe != 0) && take(ref, guess, maybe);
+    if (OKTETT_LIKELY(maybe == 0)) return false;
+    if constexpr (kJudged)
+      return offer_block(ref.block(), maybe);
+    else
+      return take(ref, guess, maybe);
   }
+
+  // ---- Hits that are judged.
+
+  /// Decides triangles of a block, the bits of `maybe`, and offers those that are hit.
+  OKTETT_NOINLINE bool offer_block(std::uint32_t block, unsigned maybe) {
+    HitWithNormal hits[kBlock];
+    int count = 0;
+    for (; maybe != 0; maybe &= maybe - 1) {
+      const HitWithNormal hit = decide(block * kBlock + static_cast<std::uint32_t>(__builtin_ctz(maybe)));
+      if (hit.valid() && hit.t <= tmax_) hits[count++] = hit;
+    }
+    return count > 0 && judge_.offer(hits, count) && accept();
+  }
+
+  /// The same for a leaf of the table.
+  OKTETT_NOINLINE void offer_leaf(const LeafEntry& leaf) {
+    if (!has_state_) state_.set(ray_, accel_.bounds);
+    has_state_ = true, state_.tmax[0] = tmax_;
+    if (holds_instances(leaf.kind)) {
+      each_instance(accel_, leaf, [&]<class Instance>(const Instance& instance, const Accel& child) {
+        InsideJudge<Instance, A> inside(judge_, instance);
+        if (judge_one<Q, A>(child, ray_inside<Instance, A>(instance, load_rays(state_)), inside))
+          accept(), state_.tmax[0] = tmax_;
+        return !found();
+      });
+      return;
+    }
+    HitList& list = judge_.scratch();
+    list.shrink(0);
+    collect_leaf(accel_, leaf, state_, list);
+    if (offer_list<Q, A>(list, judge_)) accept();
+  }
+
+  OKTETT_INLINE bool accept() {
+    candidate_ = kDecidedHit;
+    tmax_ = judge_.end();
+    return true;
+  }
+
+  // ---- Hits that count without being judged.
 
   /// The same for the triangles that the filter did not reject, the bits of `maybe`.
   OKTETT_INLINE bool take(NodeRef ref, const TriangleGuess<F>& guess, unsigned maybe) {
@@ -242,17 +342,17 @@ class SoloTraversal {
     if (!has_state_) state_.set(ray_, accel_.bounds);
     has_state_ = true;
     if (candidate_ < kDecidedHit) {
-      const Hit h = decide();
+      const Hit h = decide(candidate_);
       if (h.valid()) accept_hit(state_, 0, h.t, h.u, h.v, h.item, h.instance);
     }
     return state_;
   }
 
-  /// Decides the candidate.
-  OKTETT_INLINE Hit decide() const {
+  /// Decides a candidate.
+  OKTETT_INLINE HitWithNormal decide(std::uint32_t candidate) const {
     using D = Simd<double, V::kWidth, A>;
-    const TriangleBlock& block = accel_.blocks[candidate_ / kBlock];
-    const std::uint32_t lane = candidate_ % kBlock;
+    const TriangleBlock& block = accel_.blocks[candidate / kBlock];
+    const std::uint32_t lane = candidate % kBlock;
     const auto origin = [&](int axis) { return D(static_cast<double>(o_[axis])); };
     HitLanes<V> h;
     const unsigned met = bits(decide_watertight(
@@ -264,7 +364,14 @@ class SoloTraversal {
     if (OKTETT_UNLIKELY(met == 0)) return {};
     float t[V::kWidth], u[V::kWidth], v[V::kWidth];
     h.t.store(t), h.u.store(u), h.v.store(v);
-    return {t[0], u[0], v[0], block.item[lane], kNoId};
+    const TriangleLanes<Simd<float, 1, A>> corners =
+        broadcast_triangle<Simd<float, 1, A>>(block, static_cast<int>(lane));
+    const auto at = [](const Vec3<Simd<float, 1, A>>& p) {
+      return Vec3f{p.x.part[0].v, p.y.part[0].v, p.z.part[0].v};
+    };
+    return {{t[0], u[0], v[0], block.item[lane], kNoId},
+            triangle_normal(at(corners.a), at(corners.b), at(corners.c)),
+            true};
   }
 
   OKTETT_INLINE bool adopt() {
@@ -276,6 +383,7 @@ class SoloTraversal {
 
   const Accel& accel_;
   const Ray& ray_;
+  [[no_unique_address]] std::conditional_t<kJudged, Judge&, Judge> judge_;
   float inv_[4], near_shift_[4], far_shift_[4], slack_[4];
   float d_[7],
       o_[7];  ///< direction and origin, twice: from each axis on, the next two follow in cyclic order
@@ -286,6 +394,19 @@ class SoloTraversal {
   float weight_scale_, det_scale_, tmax_, hit_lo_;
   std::uint32_t candidate_ = kNoCandidate;
   RayState<1, A> state_;
+  HitWithNormal inside_;  ///< the last nearest hit in an instance
 };
+
+template <Query Q, class A>
+OKTETT_NOINLINE bool judge_one(const Accel& accel, const Ray& ray, HitJudge& judge) {
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    SoloTraversal<Q, A, HitJudge> way(accel, ray, judge);
+    if (OKTETT_LIKELY(way.is_tame())) return way.run().valid();
+  }
+  HitList& list = judge.scratch();
+  list.shrink(0);
+  trace_all_hits<A>(accel, ray, list);
+  return offer_list<Q, A>(list, judge);
+}
 
 }  // namespace oktett

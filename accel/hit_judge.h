@@ -1,0 +1,36 @@
+#pragma once
+/// \file Judges of hits that a ray finds on its way through a structure.
+
+#include "accel/hit_sink.h"
+
+namespace oktett {
+
+/// A hit, and where a triangle that stands in the structure itself was hit, its normal.
+struct HitWithNormal : Hit {
+  Vec3f normal;  ///< see triangle_normal(), in the space of the structure that holds the triangle
+  bool has_normal = false;
+
+  HitWithNormal() = default;
+  OKTETT_INLINE HitWithNormal(const Hit& hit) : Hit(hit) {}
+  OKTETT_INLINE HitWithNormal(const Hit& hit, const Vec3f& n, bool known) : Hit(hit), normal(n), has_normal(known) {}
+};
+
+/// Says which hits of a ray count, while it is on its way: what does not count hides nothing.
+class HitJudge {
+ public:
+  /// Hits of one place in the structure, none beyond end(), in no order. Returns true if one of them counts,
+  /// the nearest that does; end() is its distance then, or less.
+  virtual bool offer(HitWithNormal* hits, int count) = 0;
+  /// Where the ray ends: at its nearest hit that counts, or at its own end.
+  virtual float end() const = 0;
+  /// Room for crossings while none are offered.
+  virtual HitList& scratch() = 0;
+
+ protected:
+  ~HitJudge() = default;
+};
+
+/// What counts without being judged.
+struct NoJudge {};
+
+}  // namespace oktett
