@@ -12,7 +12,8 @@ struct HitWithNormal : Hit {
 
   HitWithNormal() = default;
   OKTETT_INLINE HitWithNormal(const Hit& hit) : Hit(hit) {}
-  OKTETT_INLINE HitWithNormal(const Hit& hit, const Vec3f& n, bool known) : Hit(hit), normal(n), has_normal(known) {}
+  OKTETT_INLINE HitWithNormal(const Hit& hit, const Vec3f& n, bool known)
+      : Hit(hit), normal(n), has_normal(known) {}
 };
 
 /// Says which hits of a ray count, while it is on its way: what does not count hides nothing.

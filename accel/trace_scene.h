@@ -188,6 +188,10 @@ struct SceneBounds {
 };
 SceneBounds bounds(const TraceScene& scene);
 
+/// Whether rays need no contexts: nothing moves, and there are neither masks, nor filters, nor shapes of the
+/// program.
+bool needs_no_contexts(const TraceScene& scene);
+
 /// The nearest hit of one ray.
 SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context = {},
                      Isa isa = default_isa());
@@ -202,5 +206,11 @@ void closest_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<c
 /// occluded[i] becomes 1 if ray i hits anything, else 0.
 void any_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const RayContext> contexts,
              std::span<std::uint8_t> occluded, Isa isa = default_isa());
+
+/// The same for rays in columns, without contexts. Throws Error if the scene needs them.
+void closest_hit(const TraceScene& scene, const RaySpan& rays, std::span<SceneHit> hits,
+                 Isa isa = default_isa());
+void any_hit(const TraceScene& scene, const RaySpan& rays, std::span<std::uint8_t> occluded,
+             Isa isa = default_isa());
 
 }  // namespace oktett

@@ -33,7 +33,7 @@ namespace {
 
 struct CallsOptions {
   std::vector<std::string> meshes;
-  std::string embree = OKTETT_REAL_EMBREE, oktett = OKTETT_OWN_EMBREE, isa;
+  std::string embree = OKTETT_REAL_EMBREE, oktett = OKTETT_OWN_EMBREE, isa, rows;
   int rays = 20000, runs = 15, leaks = 0;
 };
 
@@ -293,13 +293,15 @@ std::size_t by_eight(CallScene& scene, const std::vector<RTCRayHit>& rays) {
   return found;
 }
 
-/// A row: contenders in turn, the first being Oktett's.
+/// A row: contenders in turn, the first being Oktett's. Only rows whose names hold `options.rows` are
+/// measured.
 void row(const std::string& name, const std::vector<CallScene*>& scenes,
          const std::vector<const char*>& names, const std::vector<RTCRayHit>& rays, const Work& work,
-         int runs) {
+         const CallsOptions& options) {
+  if (name.find(options.rows) == std::string::npos) return;
   std::vector<std::vector<double>> times(scenes.size());
   std::vector<std::size_t> found(scenes.size());
-  for (int run = -1; run < runs; ++run)
+  for (int run = -1; run < options.runs; ++run)
     for (std::size_t k = 0; k < scenes.size(); ++k) {
       const double s = thread_seconds([&] { found[k] = work(*scenes[k], rays); });
       if (run >= 0) times[k].push_back(s / static_cast<double>(rays.size()) * 1e9);
@@ -326,8 +328,8 @@ void measure(const TriangleMesh& mesh, const std::string& name, const Library& o
   const std::vector<CallScene*> all{&ours, &ordinary, &robust};
   const std::vector<const char*> names{"", "ordinary", "robust"};
   const auto both = [&](const std::string& what, const Work& work) {
-    row(name + ", " + what + ", random", all, names, random, work, options.runs);
-    row(name + ", " + what + ", camera", all, names, camera, work, options.runs);
+    row(name + ", " + what + ", random", all, names, random, work, options);
+    row(name + ", " + what + ", camera", all, names, camera, work, options);
   };
   both("rtcIntersect1", one_by_one), both("rtcOccluded1", shadows), both("rtcIntersect8", by_eight);
 
@@ -335,9 +337,9 @@ void measure(const TriangleMesh& mesh, const std::string& name, const Library& o
   filtered.add(mesh, accept_all, ~0u), masked.add(mesh, nullptr, 1), filtered_real.add(mesh, accept_all, ~0u);
   for (CallScene* scene : {&filtered, &masked, &filtered_real}) scene->commit();
   row(name + ", Oktett without filter or mask", {&ours, &filtered, &masked},
-      {"", "a filter that accepts all", "a mask"}, random, one_by_one, options.runs);
+      {"", "a filter that accepts all", "a mask"}, random, one_by_one, options);
   row(name + ", a filter that accepts all", {&filtered, &filtered_real}, {"", "robust"}, random, one_by_one,
-      options.runs);
+      options);
 
   std::vector<UserSphere> spheres;
   Draw draw(3);
@@ -346,7 +348,7 @@ void measure(const TriangleMesh& mesh, const std::string& name, const Library& o
   CallScene user(own, true), user_real(real, true);
   user.add(spheres), user_real.add(spheres);
   user.commit(), user_real.commit();
-  row("2000 spheres of the program", {&user, &user_real}, {"", "robust"}, random, one_by_one, options.runs);
+  row("2000 spheres of the program", {&user, &user_real}, {"", "robust"}, random, one_by_one, options);
 }
 
 // ---- Rays at edges and corners.
@@ -433,6 +435,7 @@ int run(int argc, char** argv) {
   const std::vector<Option> list = {
       {"--rays", "N", "rays of each row (20000)", set(options.rays, 64, 100000000)},
       {"--runs", "N", "how often each row is measured (15)", set(options.runs, 1, 1000)},
+      {"--rows", "TEXT", "only rows whose names hold this text", word(options.rows)},
       {"--leaks", "N", "aim N rays at edges and N at corners of closed meshes, in place of timing",
        set(options.leaks, 1, 100000000)},
       {"--isa", "NAME", "sse4.2, avx2 or avx512, of both libraries", word(options.isa)},

@@ -44,6 +44,9 @@ class Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
+  /// Whether the rays alone say what they hit.
+  bool needs_no_contexts() const { return settings_.filter == nullptr && oktett::needs_no_contexts(traced_); }
+
   void closest(RTCRayHit& rayhit, unsigned packet = 1, unsigned lane = 0) {
     RTCRay& ray = rayhit.ray;
     if (!(ray.tnear <= ray.tfar)) return;
@@ -72,10 +75,58 @@ class Call {
       any<kBatch>(rays.subspan(begin, std::min(kBatch, rays.size() - begin)), 1, nullptr);
   }
 
+  /// `n` rays in columns, at most kMostPacket, where needs_no_contexts(); those whose `valid` is -1, or all
+  /// if there is none.
+  void closest_columns(const int* valid, RTCRayHitN* rayhits, unsigned n) const {
+    const Columns columns(valid, RTCRayHitN_RayN(rayhits, n), n);
+    SceneHit found[kMostPacket];
+    closest_hit(traced_, columns.rays(), std::span(found, n), isa_);
+    RTCHitN* const hits = RTCRayHitN_HitN(rayhits, n);
+    for (unsigned i = 0; i < n; ++i) {
+      if (!found[i].valid()) continue;
+      RTCRayN_tfar(RTCRayHitN_RayN(rayhits, n), n, i) = found[i].t;
+      RTCHit hit;
+      set(found[i], hit);
+      store(hit, hits, n, i);
+    }
+  }
+  void any_columns(const int* valid, RTCRayN* rays, unsigned n) const {
+    const Columns columns(valid, rays, n);
+    std::uint8_t occluded[kMostPacket];
+    any_hit(traced_, columns.rays(), std::span(occluded, n), isa_);
+    for (unsigned i = 0; i < n; ++i)
+      if (occluded[i] != 0) RTCRayN_tfar(rays, n, i) = -std::numeric_limits<float>::infinity();
+  }
+
   /// So many rays of a stream go side by side.
   static constexpr std::size_t kBatch = 64;
 
  private:
+  /// The columns of a packet of the program, and where its rays begin and end.
+  class Columns {
+   public:
+    Columns(const int* valid, RTCRayN* rays, unsigned n) {
+      for (unsigned i = 0; i < n; ++i) {
+        const float tnear = RTCRayN_tnear(rays, n, i), tfar = RTCRayN_tfar(rays, n, i);
+        const bool is_traced =
+            (valid == nullptr || valid[i] == -1) && tnear <= tfar && RTCRayN_mask(rays, n, i) != 0;
+        tmin_[i] = tnear < 0 ? 0.0f : tnear, tmax_[i] = is_traced ? tfar : -1.0f;
+      }
+      rays_ = {{&RTCRayN_org_x(rays, n, 0), &RTCRayN_org_y(rays, n, 0), &RTCRayN_org_z(rays, n, 0)},
+               {&RTCRayN_dir_x(rays, n, 0), &RTCRayN_dir_y(rays, n, 0), &RTCRayN_dir_z(rays, n, 0)},
+               tmin_,
+               tmax_,
+               n};
+    }
+    Columns(const Columns&) = delete;
+    Columns& operator=(const Columns&) = delete;
+    const RaySpan& rays() const { return rays_; }
+
+   private:
+    float tmin_[kMostPacket], tmax_[kMostPacket];
+    RaySpan rays_;
+  };
+
   /// Up to N rays.
   template <std::size_t N>
   class Batch {
@@ -125,7 +176,10 @@ class Call {
   void keep(const SceneHit& hit, RTCRayHit& rayhit) const {
     if (!hit.valid()) return;
     rayhit.ray.tfar = hit.t;
-    RTCHit& out = rayhit.hit;
+    set(hit, rayhit.hit);
+  }
+
+  void set(const SceneHit& hit, RTCHit& out) const {
     out.Ng_x = hit.normal.x, out.Ng_y = hit.normal.y, out.Ng_z = hit.normal.z;
     out.u = hit.u, out.v = hit.v;
     out.primID = hit.primitive, out.geomID = hit.geometry;
@@ -157,6 +211,7 @@ unsigned packet_of(unsigned n) { return n <= kMostPacket ? n : 1; }
 
 /// `n` rays in columns; those whose `valid` is -1, or all if there is none.
 void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned n) {
+  if (n <= kMostPacket && call.needs_no_contexts()) return call.closest_columns(valid, rayhits, n);
   RTCRayN* const rays = RTCRayHitN_RayN(rayhits, n);
   RTCHitN* const hits = RTCRayHitN_HitN(rayhits, n);
   RTCRayHit batch[kMostPacket];
@@ -177,6 +232,7 @@ void closest_columns(Call& call, const int* valid, RTCRayHitN* rayhits, unsigned
 }
 
 void any_columns(Call& call, const int* valid, RTCRayN* rays, unsigned n) {
+  if (n <= kMostPacket && call.needs_no_contexts()) return call.any_columns(valid, rays, n);
   RTCRay batch[kMostPacket];
   unsigned number[kMostPacket];
   for (unsigned next = 0; next < n;) {

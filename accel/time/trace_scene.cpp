@@ -468,8 +468,9 @@ void for_each_ray(std::size_t count, Function&& f) {
 /// So few rays are traced faster one after the other than as a batch.
 constexpr std::size_t kFewRays = 8;
 
-/// The hits of rays with what does not move.
-void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<SceneHit> hits, Isa isa) {
+/// The hits of rays, RaySpan or std::span<const Ray>, with what does not move.
+template <class Rays>
+void plain_hits(const TraceScene& scene, const Rays& rays, std::span<SceneHit> hits, Isa isa) {
   for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
     static thread_local HitBatch found;
     found.resize_uninitialized(piece.size);
@@ -479,7 +480,15 @@ void plain_hits(const TraceScene& scene, std::span<const Ray> rays, std::span<Sc
   });
 }
 
+void require_no_contexts(const TraceScene& scene, const char* query) {
+  if (!needs_no_contexts(scene)) throw Error(std::string(query) + ": the scene needs contexts of the rays");
+}
+
 }  // namespace
+
+bool needs_no_contexts(const TraceScene& scene) {
+  return is_plain<Query::closest>(scene, RayContext{}) && is_plain<Query::any>(scene, RayContext{});
+}
 
 SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
   if (is_plain<Query::closest>(scene, context))
@@ -510,6 +519,19 @@ void any_hit(const TraceScene& scene, std::span<const Ray> rays, std::span<const
   for_each_ray(rays.size(), [&](std::size_t i) {
     occluded[i] = any_hit(scene, rays[i], contexts[contexts.size() == 1 ? 0 : i], isa);
   });
+}
+
+void closest_hit(const TraceScene& scene, const RaySpan& rays, std::span<SceneHit> hits, Isa isa) {
+  require_same_size(rays.size, hits.size(), "closest_hit");
+  require_no_contexts(scene, "closest_hit");
+  if (rays.size > kFewRays) return plain_hits(scene, rays, hits, isa);
+  for (std::size_t i = 0; i < rays.size; ++i)
+    hits[i] = plain_hit(scene, rays[i], trace_code(isa).closest_hit_with_normal(*scene.fixed, rays[i]));
+}
+
+void any_hit(const TraceScene& scene, const RaySpan& rays, std::span<std::uint8_t> occluded, Isa isa) {
+  require_no_contexts(scene, "any_hit");
+  any_hit(*scene.fixed, rays, occluded, isa);
 }
 
 }  // namespace oktett
