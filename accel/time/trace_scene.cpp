@@ -466,7 +466,7 @@ void for_each_ray(std::size_t count, Function&& f) {
 }
 
 /// So few rays are traced faster one after the other than as a batch.
-constexpr std::size_t kFewRays = 8;
+constexpr std::size_t kFewRays = 4;
 
 /// The hits of rays, RaySpan or std::span<const Ray>, with what does not move.
 template <class Rays>
