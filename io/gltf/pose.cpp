@@ -134,8 +134,8 @@ GltfPose GltfAnimator::at(std::optional<double> time) const {
       if (track.channel.path == GltfChannel::Path::rotation)
         places[node].rotation = {value[0], value[1], value[2], value[3]};
       else
-        (track.channel.path == GltfChannel::Path::scale ? places[node].scale : places[node].translation) = {
-            value[0], value[1], value[2]};
+        (track.channel.path == GltfChannel::Path::scale ? places[node].scale : places[node].translation) =
+            Vec3d{value[0], value[1], value[2]};
     }
     for (const std::uint32_t node : moved) pose.to_parent[node] = places[node].transform();
   }
