@@ -31,7 +31,10 @@ Ray to_ray(const RTCRay& r) {
 class Call {
  public:
   Call(const Scene& scene, const Settings& settings)
-      : traced_(*scene.to_trace().scene), isa_(scene.device->isa()), settings_(settings) {
+      : traced_(*scene.to_trace().scene),
+        is_plain_(oktett::needs_no_contexts(traced_)),
+        isa_(scene.device->isa()),
+        settings_(settings) {
     if (settings_.context == nullptr) {
 #if OKTETT_EMBREE == 4
       rtcInitRayQueryContext(&own_context_);
@@ -50,6 +53,10 @@ class Call {
   void closest(RTCRayHit& rayhit, unsigned packet = 1, unsigned lane = 0) {
     RTCRay& ray = rayhit.ray;
     if (!(ray.tnear <= ray.tfar)) return;
+    if (needs_no_contexts()) {
+      if (ray.mask != 0) keep(closest_hit(traced_, to_ray(ray), {}, isa_), rayhit);
+      return;
+    }
     RayQuery query = query_for(ray, &rayhit);
     query.packet = packet, query.lane = lane;
     keep(closest_hit(traced_, to_ray(ray), context_for(ray, query), isa_), rayhit);
@@ -57,6 +64,10 @@ class Call {
 
   void any(RTCRay& ray, unsigned packet = 1, unsigned lane = 0) {
     if (!(ray.tnear <= ray.tfar)) return;
+    if (needs_no_contexts()) {
+      if (ray.mask != 0) keep(any_hit(traced_, to_ray(ray), {}, isa_), ray);
+      return;
+    }
     RayQuery query = query_for(ray, nullptr);
     query.packet = packet, query.lane = lane;
     keep(any_hit(traced_, to_ray(ray), context_for(ray, query), isa_), ray);
@@ -201,6 +212,7 @@ class Call {
   }
 
   const TraceScene& traced_;
+  const bool is_plain_;
   const Isa isa_;
   Settings settings_;
   QueryContext own_context_;

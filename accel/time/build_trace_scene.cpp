@@ -133,7 +133,8 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   const auto add = [&](std::uint32_t g, std::uint32_t index, Geometry geometry) {
     geometry.mask = ~0u, geometry.user = scene.geometries[g].number;
     fixed.push_back(std::move(geometry));
-    scene.fixed_place.push_back({g, index});
+    const SceneGeometry& own = scene.geometries[g];
+    scene.fixed_geometries.push_back({{g, index}, own.number, 0, own.faces.get(), own.user, {}});
   };
   const auto instance = [](const TraceScene& child, const Affine& transform) {
     Geometry geometry;
@@ -160,11 +161,12 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   scene.fixed = build_accel(std::move(fixed), plain);
   scene.has_pieces |= scene.fixed->pieces;
   scene.bounds.grow(scene.fixed->bounds);
-  scene.normals.resize(scene.fixed->geometries.size());
-  for (std::size_t g = 0; g < scene.normals.size(); ++g) {
+  for (std::size_t g = 0; g < scene.fixed_geometries.size(); ++g) {
+    FixedGeometry& own = scene.fixed_geometries[g];
+    own.first_item = scene.fixed->first_item[g];
     const auto* const shape = std::get_if<MeshGeometry>(&scene.fixed->geometries[g].shape);
     if (shape != nullptr && scene.fixed->frames[g].identity)
-      scene.normals[g] = normals_of(*shape->mesh, options.parallel);
+      own.normals = normals_of(*shape->mesh, options.parallel);
   }
 }
 
@@ -267,6 +269,9 @@ std::shared_ptr<const TraceScene> build_trace_scene(std::vector<SceneGeometry> g
   note_children(*scene);
   build_fixed(*scene, options);
   build_moving(*scene, options);
+  const bool is_judged = !scene->moving.empty() || scene->has_masks;
+  scene->is_plain_closest = !is_judged && !scene->has_closest_filters;
+  scene->is_plain_any = !is_judged && !scene->has_any_filters;
   return scene;
 }
 

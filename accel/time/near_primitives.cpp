@@ -133,7 +133,7 @@ class NearWalk {
   void visit(const Accel& accel, std::uint32_t item) {
     if (own_ != nullptr) return tell(*own_, item);
     const std::uint32_t g = accel.geometry_of(item);
-    const ItemTable::Place place = scene_.fixed_place[g];
+    const ItemTable::Place place = scene_.fixed_geometries[g].place;
     const SceneGeometry& geometry = scene_.geometries[place.geometry];
     const Affine& to_scene = accel.geometries[g].transform;
     if (!std::holds_alternative<Geometry>(geometry.shape))

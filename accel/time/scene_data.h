@@ -32,6 +32,18 @@ struct ItemTable {
   std::uint32_t count() const { return first.back(); }
 };
 
+/// A geometry of the fixed structure, and what names its hits.
+struct FixedGeometry {
+  ItemTable::Place place;  ///< in TraceScene::geometries, and which of an array of instances it is
+  std::uint32_t number;    ///< SceneGeometry::number
+  std::uint32_t first_item = 0;
+  const FaceMap* faces;
+  void* user;
+  /// The normals of its triangles, if it is a mesh that stands as it is: a hit then reads one place in memory
+  /// instead of six.
+  Column<Vec3f> normals;
+};
+
 /// What moves with one number of keys, and what a callback tests.
 struct MovingPart {
   std::unique_ptr<const TimeTree> tree;
@@ -51,11 +63,7 @@ class TraceScene {
  public:
   std::vector<SceneGeometry> geometries;
   std::shared_ptr<const Accel> fixed;  ///< never null
-  /// Of geometry i of `fixed`: its place in `geometries`, and which of an array of instances it is.
-  std::vector<ItemTable::Place> fixed_place;
-  /// The normals of the triangles of geometry i of `fixed`, if it is a mesh that stands as it is: a hit then
-  /// reads one place in memory instead of six.
-  std::vector<Column<Vec3f>> normals;
+  std::vector<FixedGeometry> fixed_geometries;
   std::vector<MovingPart> moving;
   Box bounds;                ///< at all times
   std::uint32_t levels = 0;  ///< of instances
@@ -64,6 +72,8 @@ class TraceScene {
   bool has_pieces = false;      ///< a triangle may stand in several leaves of what does not move
   bool has_masks = false;       ///< a mask is not ~0
   bool has_closest_filters = false, has_any_filters = false;
+  /// Hits are those of `fixed` alone, and nobody judges them.
+  bool is_plain_closest = false, is_plain_any = false;
 
   /// The scene that instance `index` of a geometry shows.
   const TraceScene& child(std::uint32_t geometry, std::uint32_t index) const {

@@ -66,7 +66,7 @@ struct NamedHit {
       return;
     }
     if (own.instance == kNoId) {
-      const Column<Vec3f>& normals = scene->normals[scene->fixed->geometry_of(own.item)];
+      const Column<Vec3f>& normals = scene->fixed_geometries[scene->fixed->geometry_of(own.item)].normals;
       if (!normals.empty()) {
         placed.hit.normal = normals[primitive];
         return;
@@ -97,7 +97,7 @@ NamedHit name_hit(const TraceScene& scene, const Ray& ray, std::uint32_t mask, c
     std::optional<ChainLink> link;
     if (n.own.instance != kNoId) link = outermost_link(accel, n.own.instance);
     const std::uint32_t geometry = link ? link->geometry : accel.geometry_of(n.own.item);
-    const ItemTable::Place place = n.scene->fixed_place[geometry];
+    const ItemTable::Place place = n.scene->fixed_geometries[geometry].place;
     if (n.placed.place == kNoId) n.placed.place = place.geometry;
     n.geometry = &n.scene->geometries[place.geometry];
     n.is_seen &= (n.geometry->mask & mask) != 0;
@@ -425,8 +425,8 @@ void check_sizes(std::size_t rays, std::size_t contexts, std::size_t answers, co
 /// Whether the hits of a ray are those of the fixed structure alone, and nobody judges them.
 template <Query Q>
 bool is_plain(const TraceScene& scene, const RayContext& context) {
-  return scene.moving.empty() && !scene.has_masks && context.mask != 0 && context.filter == nullptr &&
-         !(Q == Query::closest ? scene.has_closest_filters : scene.has_any_filters);
+  return (Q == Query::closest ? scene.is_plain_closest : scene.is_plain_any) && context.mask != 0 &&
+         context.filter == nullptr;
 }
 template <Query Q>
 bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
@@ -437,15 +437,16 @@ bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
 /// Names a hit of the fixed structure.
 SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const HitWithNormal& hit) {
   if (!hit.valid()) return {};
-  const Accel& accel = *scene.fixed;
   if (hit.instance == kNoId) {
-    const std::uint32_t g = accel.geometry_of(hit.item);
-    if (const Column<Vec3f>& normals = scene.normals[g]; !normals.empty()) {
+    const FixedGeometry& own =
+        scene.fixed_geometries[scene.fixed_geometries.size() == 1 ? 0 : scene.fixed->geometry_of(hit.item)];
+    const std::uint32_t triangle = hit.item - own.first_item;
+    if (!own.normals.empty()) {
       SceneHit out;
       out.t = hit.t, out.u = hit.u, out.v = hit.v;
-      const std::uint32_t triangle = hit.item - accel.first_item[g];
-      out.normal = hit.has_normal ? hit.normal : normals[triangle];
-      name_face(out, scene.geometries[scene.fixed_place[g].geometry], triangle);
+      out.normal = hit.has_normal ? hit.normal : own.normals[triangle];
+      out.geometry = own.number, out.primitive = triangle, out.user = own.user;
+      if (own.faces != nullptr) own.faces->to_face(out.primitive, out.u, out.v);
       return out;
     }
   }
@@ -486,9 +487,7 @@ void require_no_contexts(const TraceScene& scene, const char* query) {
 
 }  // namespace
 
-bool needs_no_contexts(const TraceScene& scene) {
-  return is_plain<Query::closest>(scene, RayContext{}) && is_plain<Query::any>(scene, RayContext{});
-}
+bool needs_no_contexts(const TraceScene& scene) { return scene.is_plain_closest && scene.is_plain_any; }
 
 SceneHit closest_hit(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
   if (is_plain<Query::closest>(scene, context))
