@@ -523,7 +523,7 @@ TEST(TraceScenes, BatchesHaveTheHitsOfSingleRays) {
   EXPECT_EQ(hits[77].t, closest_hit(*scene, rays[77], contexts[0]).t);
   EXPECT_THROW(closest_hit(*scene, rays, {contexts.data(), 2}, hits), Error);
   EXPECT_THROW(any_hit(*scene, rays, contexts, {occluded.data(), 3}), Error);
-  closest_hit(*scene, {}, {}, {}), any_hit(*scene, {}, {contexts.data(), 1}, {});
+  closest_hit(*scene, std::span<const Ray>(), {}, {}), any_hit(*scene, {}, {contexts.data(), 1}, {});
 }
 
 }  // namespace

@@ -114,21 +114,31 @@ OKTETT_INLINE std::uint32_t near_offset(std::uint32_t axis, unsigned negative) {
 }
 
 /// The slab test in fused form: where a ray enters the boxes of a node's children, `near`, and where it
-/// leaves them, which is returned. It meets those that it does not leave before it enters. `near_row` are the
-/// offsets of the near planes in the node, per axis; see RayChunk for the others.
+/// leaves them, which is returned. It meets those that it does not leave before it enters. `row(offset)` are
+/// the planes at an offset in the node, `near_row` the offsets of the near ones, per axis; see RayChunk for
+/// the others.
+template <class F, class Row>
+OKTETT_INLINE F fused_interval(Row&& row, const std::uint32_t (&near_row)[3], const std::array<F, 3>& inverse,
+                               const std::array<F, 3>& near_shift, const std::array<F, 3>& far_shift,
+                               const F& tmin, const F& limit, F& near) {
+  constexpr std::uint32_t kOther = BvhNode::kWidth;
+  F n[3], f[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    n[k] = fast_fma(row(near_row[k]), inverse[k], near_shift[k]);
+    f[k] = fast_fma(row(near_row[k] ^ kOther), inverse[k], far_shift[k]);
+  }
+  near = max(max(n[0], n[1]), max(n[2], tmin));
+  return min(min(f[0], f[1]), min(f[2], limit)) * F(kSlabRelativeSlack);
+}
+
+/// The same for the boxes of `node`.
 template <class F>
 OKTETT_INLINE F fused_interval(const BvhNode& node, const std::uint32_t (&near_row)[3],
                                const std::array<F, 3>& inverse, const std::array<F, 3>& near_shift,
                                const std::array<F, 3>& far_shift, const F& tmin, const F& limit, F& near) {
-  constexpr std::uint32_t kOther = BvhNode::kWidth;
-  const float* rows = &node.plane[0][0];
-  F n[3], f[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    n[k] = fast_fma(F::load(rows + near_row[k]), inverse[k], near_shift[k]);
-    f[k] = fast_fma(F::load(rows + (near_row[k] ^ kOther)), inverse[k], far_shift[k]);
-  }
-  near = max(max(n[0], n[1]), max(n[2], tmin));
-  return min(min(f[0], f[1]), min(f[2], limit)) * F(kSlabRelativeSlack);
+  const float* const rows = &node.plane[0][0];
+  return fused_interval<F>([&](std::uint32_t offset) { return F::load(rows + offset); }, near_row, inverse,
+                           near_shift, far_shift, tmin, limit, near);
 }
 
 /// W rays in columns. A box is met if

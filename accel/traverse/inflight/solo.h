@@ -93,6 +93,51 @@ class Siblings<Query::any, A> {
   NodeRef next_;
 };
 
+/// A ray prepared for the slab test in fused form, and for triangles.
+template <class A>
+struct SoloRay {
+  using V = Simd<float, 4, A>;
+
+  float inv[4], near_shift[4], far_shift[4], slack[4];  ///< see RayChunk
+  /// Direction and origin, twice: from each axis on, the next two follow in cyclic order.
+  float d[7], o[7];
+  float d_max;
+  unsigned negative;
+  int z_axis;
+  double inv_dz, shear_x, shear_y;
+  bool is_tame;  ///< see RayChunk
+
+  /// Through what lies within `bounds`.
+  OKTETT_INLINE SoloRay(const Ray& ray, const Box& bounds) {
+    const auto lanes = [](const Vec3f& p) { return V::of(p.x, p.y, p.z, 0.0f); };
+    const V origin = lanes(ray.origin), unflushed = lanes(ray.direction),
+            big(std::numeric_limits<float>::max());
+    const V direction = select(abs(unflushed) < V(std::numeric_limits<float>::min()), V(0.0f), unflushed);
+    const float extent = box_extent(bounds), span = horizontal_max(abs(origin)) + extent;
+    d_max = horizontal_max(abs(direction));
+    const unsigned finite = bits((abs(origin) <= big) & (abs(direction) <= big));
+    is_tame = finite == 0xf && 0 <= ray.tmin && ray.tmin < ray.tmax && kChunkMinExtent <= span &&
+              span <= kClassifyMaxExtent && 1 / kClassifyMaxDirection <= d_max &&
+              d_max <= kClassifyMaxDirection;
+    const V reach = V(span) / V(d_max);
+    const SlabLines<V> line = slab_lines(origin, direction, reach, V(d_max * kChunkMinComponent), V(extent));
+    line.inverse.store(inv), line.near_shift.store(near_shift), line.far_shift.store(far_shift);
+    chunk_slack(reach).store(slack);
+    direction.store(d), direction.store(d + 3), origin.store(o), origin.store(o + 3);
+    // The first axis of the greatest component; without branches, which random directions make slow.
+    z_axis = __builtin_ctz(bits(abs(direction) == V(d_max)) | 8);
+    inv_dz = 1.0 / static_cast<double>(d[z_axis]);
+    shear_x = static_cast<double>(d[z_axis + 1]) * inv_dz;
+    shear_y = static_cast<double>(d[z_axis + 2]) * inv_dz;
+    negative = bits(line.inverse < V(0.0f));
+  }
+
+  /// The offset of the near planes of an axis in a node.
+  OKTETT_INLINE std::uint32_t near_row(std::uint32_t axis) const {
+    return near_offset(axis, negative >> axis & 1);
+  }
+};
+
 /// The judge of what is outside of an instance, for hits inside.
 template <class Instance, class A>
 class InsideJudge final : public HitJudge {
@@ -126,33 +171,13 @@ template <Query Q, class A, class Judge = NoJudge>
 class SoloTraversal {
  public:
   OKTETT_INLINE SoloTraversal(const Accel& accel, const Ray& ray, Judge& judge)
-      : accel_(accel), ray_(ray), judge_(judge) {
-    const auto lanes = [](const Vec3f& p) { return V::of(p.x, p.y, p.z, 0.0f); };
-    const V o = lanes(ray.origin), unflushed = lanes(ray.direction), big(std::numeric_limits<float>::max());
-    const V d = select(abs(unflushed) < V(std::numeric_limits<float>::min()), V(0.0f), unflushed);
-    const float extent = box_extent(accel.bounds);
-    const float d_max = horizontal_max(abs(d)), span = horizontal_max(abs(o)) + extent;
-    const unsigned finite = bits((abs(o) <= big) & (abs(d) <= big));
-    tame_ = finite == 0xf && 0 <= ray.tmin && ray.tmin < ray.tmax && kChunkMinExtent <= span &&
-            span <= kClassifyMaxExtent && 1 / kClassifyMaxDirection <= d_max &&
-            d_max <= kClassifyMaxDirection;
-    const V reach = V(span) / V(d_max);
-    const SlabLines<V> line = slab_lines(o, d, reach, V(d_max * kChunkMinComponent), V(extent));
-    line.inverse.store(inv_), line.near_shift.store(near_shift_), line.far_shift.store(far_shift_);
-    chunk_slack(reach).store(slack_);
-    d.store(d_), d.store(d_ + 3), o.store(o_), o.store(o_ + 3);
-    // The first axis of the greatest component; without branches, which random directions make slow.
-    z_axis_ = __builtin_ctz(bits(abs(d) == V(d_max)) | 8);
-    inv_dz_ = 1.0 / static_cast<double>(d_[z_axis_]);
-    shear_x_ = static_cast<double>(d_[z_axis_ + 1]) * inv_dz_;
-    shear_y_ = static_cast<double>(d_[z_axis_ + 2]) * inv_dz_;
-    negative_ = bits(line.inverse < V(0.0f));
-    weight_scale_ = d_max * kWeightError, det_scale_ = d_max * kVolumeError;
+      : accel_(accel), ray_(ray), judge_(judge), r_(ray, accel.bounds) {
+    weight_scale_ = r_.d_max * kWeightError, det_scale_ = r_.d_max * kVolumeError;
     tmax_ = hit_lo_ = ray.tmax;
   }
 
   /// Whether the float arithmetic suffices for the ray; only then it may run.
-  OKTETT_INLINE bool is_tame() const { return tame_; }
+  OKTETT_INLINE bool is_tame() const { return r_.is_tame; }
 
   /// What the ray hits; if hits are judged, no more than whether one counts.
   OKTETT_INLINE HitWithNormal run() {
@@ -206,14 +231,15 @@ class SoloTraversal {
     std::uint32_t near_row[3];
     alignas(64) float lines[9][BvhNode::kWidth];
     for (std::size_t k = 0; k < 3; ++k) {
-      F(inv_[k]).store(lines[k]), F(near_shift_[k]).store(lines[3 + k]), F(far_shift_[k]).store(lines[6 + k]);
-      near_row[k] = near_offset(static_cast<std::uint32_t>(k), negative_ >> k & 1);
+      F(r_.inv[k]).store(lines[k]), F(r_.near_shift[k]).store(lines[3 + k]),
+          F(r_.far_shift[k]).store(lines[6 + k]);
+      near_row[k] = r_.near_row(static_cast<std::uint32_t>(k));
     }
     // Adding zero turns -0 into 0, because near distances are sorted by their bits.
     const F tmin(ray_.tmin + 0.0f);
     const BvhNode* nodes = accel_.nodes.data();
     const TreeBytes bytes(accel_);
-    float limit = tmax_ + slack_[0];
+    float limit = tmax_ + r_.slack[0];
     NodeRef ref = accel_.root;
     if (ref.is_none()) return;
     for (;;) {
@@ -243,12 +269,12 @@ class SoloTraversal {
       } else if (ref.is_triangles()) {
         if (OKTETT_UNLIKELY(leaf(ref))) {
           if (found()) return;
-          limit = tmax_ + slack_[0];
+          limit = tmax_ + r_.slack[0];
         }
       } else {
         table_leaf(accel_.leaves[ref.table_index()]);
         if (found()) return;
-        limit = tmax_ + slack_[0];
+        limit = tmax_ + r_.slack[0];
       }
       while (top >= 0 && waiting[top].beyond(limit)) --top;
       if (top < 0) return;
@@ -259,9 +285,9 @@ class SoloTraversal {
 
   /// Tests a block of triangles; returns true if there is a new nearest hit.
   OKTETT_INLINE bool leaf(NodeRef ref) {
-    const auto guess = guess_triangle(Vec3<F>{F(o_[0]), F(o_[1]), F(o_[2])},
-                                      Vec3<F>{F(d_[0]), F(d_[1]), F(d_[2])}, F(weight_scale_), F(det_scale_),
-                                      filter_triangle(load_triangles<F>(accel_.blocks[ref.block()])));
+    const auto guess = guess_triangle(
+        Vec3<F>{F(r_.o[0]), F(r_.o[1]), F(r_.o[2])}, Vec3<F>{F(r_.d[0]), F(r_.d[1]), F(r_.d[2])},
+        F(weight_scale_), F(det_scale_), filter_triangle(load_triangles<F>(accel_.blocks[ref.block()])));
     const unsigned present = (2u << (ref.triangle_count() - 1)) - 1;
     const unsigned maybe = bits(maybe_hit(guess, F(tmax_))) & present;
     if (OKTETT_LIKELY(maybe == 0)) return false;
@@ -320,7 +346,7 @@ class SoloTraversal {
     };
     const auto interval = [&] { return hit_interval(guess, F(ray_.tmin), F(tmax_)); };
     SureHit hit;
-    switch (judge_block<Q, A>(guess, maybe, 0, block, o_, d_, true, hit_lo_, repeated, interval, hit)) {
+    switch (judge_block<Q, A>(guess, maybe, 0, block, r_.o, r_.d, true, hit_lo_, repeated, interval, hit)) {
       case BlockVerdict::missed:
         return false;
       case BlockVerdict::hit:
@@ -353,14 +379,14 @@ class SoloTraversal {
     using D = Simd<double, V::kWidth, A>;
     const TriangleBlock& block = accel_.blocks[candidate / kBlock];
     const std::uint32_t lane = candidate % kBlock;
-    const auto origin = [&](int axis) { return D(static_cast<double>(o_[axis])); };
+    const auto origin = [&](int axis) { return D(static_cast<double>(r_.o[axis])); };
     HitLanes<V> h;
     const unsigned met = bits(decide_watertight(
-        ShearLanes<D>{{origin(z_axis_ + 1), origin(z_axis_ + 2), origin(z_axis_)},
-                      D(inv_dz_),
-                      D(shear_x_),
-                      D(shear_y_)},
-        broadcast_triangle<V>(block, static_cast<int>(lane), z_axis_), V(ray_.tmin), V(ray_.tmax), h));
+        ShearLanes<D>{{origin(r_.z_axis + 1), origin(r_.z_axis + 2), origin(r_.z_axis)},
+                      D(r_.inv_dz),
+                      D(r_.shear_x),
+                      D(r_.shear_y)},
+        broadcast_triangle<V>(block, static_cast<int>(lane), r_.z_axis), V(ray_.tmin), V(ray_.tmax), h));
     if (OKTETT_UNLIKELY(met == 0)) return {};
     float t[V::kWidth], u[V::kWidth], v[V::kWidth];
     h.t.store(t), h.u.store(u), h.v.store(v);
@@ -384,13 +410,8 @@ class SoloTraversal {
   const Accel& accel_;
   const Ray& ray_;
   [[no_unique_address]] std::conditional_t<kJudged, Judge&, Judge> judge_;
-  float inv_[4], near_shift_[4], far_shift_[4], slack_[4];
-  float d_[7],
-      o_[7];  ///< direction and origin, twice: from each axis on, the next two follow in cyclic order
-  unsigned negative_;
-  int z_axis_;
-  double inv_dz_, shear_x_, shear_y_;
-  bool tame_, has_state_ = false;
+  const SoloRay<A> r_;
+  bool has_state_ = false;
   float weight_scale_, det_scale_, tmax_, hit_lo_;
   std::uint32_t candidate_ = kNoCandidate;
   RayState<1, A> state_;
