@@ -36,14 +36,18 @@ void Scene::attach(RTCGeometry geometry, unsigned number) {
 }
 
 void Scene::detach(unsigned number) {
-  geometry(number);
   const std::lock_guard lock(numbers_);
+  geometry(number);
   geometries_[number] = {};
   changed_ = true;
 }
 
-RTCGeometry Scene::geometry(unsigned number) const {
+RTCGeometry Scene::geometry_locked(unsigned number) const {
   const std::lock_guard lock(numbers_);
+  return geometry(number);
+}
+
+RTCGeometry Scene::geometry(unsigned number) const {
   if (number >= geometries_.size() || !geometries_[number])
     fail(RTC_ERROR_INVALID_ARGUMENT, "there is no geometry " + std::to_string(number));
   return geometries_[number].handle();
@@ -177,7 +181,7 @@ RTC_API RTCGeometry rtcGetGeometry(RTCScene scene, unsigned number) {
 }
 
 RTC_API RTCGeometry rtcGetGeometryThreadSafe(RTCScene scene, unsigned number) {
-  return rtcGetGeometry(scene, number);
+  return with(scene, [&](Scene& s) { return s.geometry_locked(number); });
 }
 
 RTC_API void rtcCommitScene(RTCScene scene) {

@@ -30,8 +30,11 @@ class Scene {
   unsigned attach(RTCGeometry geometry);
   void attach(RTCGeometry geometry, unsigned number);
   void detach(unsigned number);
-  /// The geometry of a number, which is not retained. Throws ApiError if there is none.
+  /// The geometry of a number, which is not retained. Throws ApiError if there is none. No other thread may
+  /// attach or detach one meanwhile: programs ask for each hit, so nothing is locked.
   RTCGeometry geometry(unsigned number) const;
+  /// The same beside threads that attach and detach.
+  RTCGeometry geometry_locked(unsigned number) const;
 
   /// Builds what has changed since the last time. Threads that call it at the same time wait for the first.
   void commit();
