@@ -33,6 +33,15 @@ struct InstanceChain {
   std::uint32_t geometry[kMost];   ///< SceneGeometry::number of each instance
   std::uint32_t primitive[kMost];  ///< which of an array of instances, else 0
 
+  InstanceChain() = default;
+  InstanceChain(const InstanceChain& other) { *this = other; }
+  /// Copies no more than there is: most hits are in no instance.
+  InstanceChain& operator=(const InstanceChain& other) {
+    count = other.count;
+    for (std::uint32_t i = 0; i < count; ++i)
+      geometry[i] = other.geometry[i], primitive[i] = other.primitive[i];
+    return *this;
+  }
   void push(std::uint32_t number, std::uint32_t index) {
     geometry[count] = number, primitive[count] = index;
     ++count;

@@ -137,8 +137,8 @@ class SceneTracer {
 
   /// What the ray hits, with a place if anything; for Query::any no more than that it does. Where a filter
   /// ends the ray, there is a place without a geometry.
-  PlacedHit run(const Ray& ray) {
-    if (context_.mask == 0) return {};
+  const PlacedHit& run(const Ray& ray) {
+    if (context_.mask == 0) return best_;
     ray_ = ray;
     if (scene_.fixed->stats.items > 0) fixed();
     for (const MovingPart& part : scene_.moving) {
@@ -388,7 +388,7 @@ class SceneTracer {
     InstanceChain chain = chain_;
     chain.push(geometry.number, place.primitive);
     SceneTracer child(scene_.child(place.geometry, place.primitive), context_, chain, isa_);
-    const PlacedHit inner = child.run(moved_ray(to_child, ray));
+    const PlacedHit& inner = child.run(moved_ray(to_child, ray));
     found = inner.hit;
     return inner.place != kNoId;
   }
@@ -411,8 +411,9 @@ const InstanceChain kNoChain{};
 template <Query Q>
 SceneHit trace(const TraceScene& scene, const Ray& ray, const RayContext& context, Isa isa) {
   SceneTracer<Q> tracer(scene, context, kNoChain, isa);
-  const SceneHit hit = tracer.run(ray).hit;
-  return hit.valid() ? hit : SceneHit{};
+  const SceneHit& hit = tracer.run(ray).hit;
+  if (hit.valid()) return hit;
+  return {};
 }
 
 void check_sizes(std::size_t rays, std::size_t contexts, std::size_t answers, const char* query) {

@@ -292,15 +292,17 @@ class SoloTraversal {
     const unsigned maybe = bits(maybe_hit(guess, F(tmax_))) & present;
     if (OKTETT_LIKELY(maybe == 0)) return false;
     if constexpr (kJudged)
-      return offer_block(ref.block(), maybe);
+      return offer_block(ref.block(), maybe, bits(guess.t <= guess.t_error) & maybe);
     else
       return take(ref, guess, maybe);
   }
 
   // ---- Hits that are judged.
 
-  /// Decides triangles of a block, the bits of `maybe`, and offers those that are hit.
-  OKTETT_NOINLINE bool offer_block(std::uint32_t block, unsigned maybe) {
+  /// Decides triangles of a block, the bits of `maybe`, and offers those that are hit. Of `near` the origin
+  /// may lie behind.
+  OKTETT_NOINLINE bool offer_block(std::uint32_t block, unsigned maybe, unsigned near) {
+    if (near != 0) maybe &= ~(near & behind_origin<A>(r_.o, r_.d, accel_.blocks[block]));
     HitWithNormal hits[kBlock];
     int count = 0;
     for (; maybe != 0; maybe &= maybe - 1) {
