@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "accel/build/refit.h"
 #include "accel/hit_place.h"
 #include "core/mesh_geometry.h"
 #include "render/dielectric_stack.h"
@@ -386,6 +387,7 @@ class WorldBuilder {
       moving.motion = std::make_shared<const Motion>(std::move(still));
     }
     moving.bent = std::make_shared<const MeshShape>(mesh), moving.user = id;
+    moving.following = std::make_shared<FollowingTree>();
     const std::size_t count = mesh.mesh->triangle_count();
     world_.primitives += count, world_.bent_triangles += count;
     if (mesh.stroke_width == 0) world_.triangles += count;
@@ -635,17 +637,24 @@ std::shared_ptr<const TriangleMesh> mesh_at(const MeshShape& shape, double time)
   return mesh;
 }
 
-/// Gives a bent object the structure of a time.
+/// Gives a bent object the structure of a time: the tree of the time before is refitted where that is as good
+/// as building it, which takes much longer.
 static void bend(World& world, MovingObject& object, double time, const BuildOptions& options) {
   const MeshShape& shape = *object.bent;
   object.mesh = mesh_at(shape, time);
-  std::vector<Geometry> geometries;
-  if (shape.stroke_width > 0)
+  if (shape.stroke_width > 0) {
+    std::vector<Geometry> strokes;
     world.objects[object.user].strokes = std::make_shared<const StrokeParts>(
-        add_strokes(object.mesh, shape.stroke_width / 2, object.user, geometries));
-  else
-    geometries.push_back({MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user});
-  object.shape = build_accel(std::move(geometries), options);
+        add_strokes(object.mesh, shape.stroke_width / 2, object.user, strokes));
+    object.shape = build_accel(std::move(strokes), options);
+    return;
+  }
+  FollowingTree& following = *object.following;
+  if (following.tree() == nullptr || shape.test != TriangleTest::watertight ||
+      !following.follow(*object.mesh, options.parallel))
+    following.set(std::const_pointer_cast<Accel>(build_accel(
+        {{MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user}}, options)));
+  object.shape = following.tree();
 }
 
 Box tight_bounds(const World& world) {

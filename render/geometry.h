@@ -58,6 +58,8 @@ using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint3
 /// catchers and of what glows alone.
 using SeenBy = std::array<std::shared_ptr<const Accel>, 2 * kRayKinds>;
 
+class FollowingTree;
+
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
@@ -69,6 +71,8 @@ struct MovingObject {
   // Of a mesh that is bent, of which `shape` and `mesh` are those at a moment.
   std::shared_ptr<const MeshShape> bent{};
   std::shared_ptr<const TriangleMesh> mesh{};
+  /// The last tree of a mesh without strokes; shared by all moments, which are made one after the other.
+  std::shared_ptr<FollowingTree> following{};
 };
 
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's

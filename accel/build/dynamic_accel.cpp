@@ -28,9 +28,7 @@ struct DynamicAccel::Entry {
   bool enabled = true;
   std::shared_ptr<const TriangleMesh> mesh;  ///< kept alive; null: the caller does
   std::shared_ptr<TriangleMesh> changed;     ///< `mesh`, if its positions have changed
-  std::shared_ptr<Accel> tree;
-  std::unique_ptr<const RefitPlan> plan;  ///< of `tree`; made for the first refit
-  double built_cost = 0;                  ///< of `tree` when it was built
+  FollowingTree following;
   Stale stale = Stale::all;
   bool was_refitted = false;
 
@@ -43,14 +41,6 @@ struct DynamicAccel::Entry {
     return spheres != nullptr && spheres->spheres.size() > 1;
   }
 };
-
-/// Whether nobody but so many owners holds what `pointer` points to, nor still reads it in another thread.
-template <class T>
-static bool is_unshared(const std::shared_ptr<T>& pointer, long owners = 1) {
-  if (pointer.use_count() > owners) return false;
-  std::atomic_thread_fence(std::memory_order_acquire);
-  return true;
-}
 
 /// Whether SurfaceInteraction::user is that of the geometry itself.
 static bool has_own_user(const Geometry& geometry) {
@@ -205,23 +195,15 @@ void DynamicAccel::update(Entry& entry) {
   const bool moves = entry.stale == Entry::Stale::positions;
   // Until there is a tree again.
   entry.stale = Entry::Stale::all;
-  if (moves && entry.plan == nullptr)
-    entry.plan = std::make_unique<const RefitPlan>(*entry.tree, *entry.changed, options_.parallel);
-  if (moves && entry.plan->is_possible()) {
-    if (!is_unshared(entry.tree)) entry.tree = clone_tree(*entry.tree);
-    std::get<MeshGeometry>(entry.tree->geometries[0].shape).mesh = entry.changed.get();
-    if (refit(*entry.tree, *entry.plan, options_.parallel) &&
-        entry.tree->stats.sah_cost <= kMostGrowth * entry.built_cost) {
-      entry.was_refitted = true, entry.stale = Entry::Stale::none;
-      return;
-    }
+  if (moves && entry.following.follow(*entry.changed, options_.parallel)) {
+    entry.was_refitted = true, entry.stale = Entry::Stale::none;
+    return;
   }
   Geometry own;
   own.shape = entry.geometry.shape, own.user = entry.geometry.user;
   BuildOptions options = options_;
   if (moves) options.quality = BuildQuality::fast;
-  entry.tree = std::const_pointer_cast<Accel>(build_accel({std::move(own)}, options));
-  entry.built_cost = entry.tree->stats.sah_cost, entry.plan = nullptr;
+  entry.following.set(std::const_pointer_cast<Accel>(build_accel({std::move(own)}, options)));
   entry.was_refitted = false, entry.stale = Entry::Stale::none;
 }
 
@@ -258,14 +240,14 @@ std::shared_ptr<DynamicAccel::Snapshot> DynamicAccel::snapshot_of(std::uint32_t 
     Geometry& shown = geometries.emplace_back();
     shown.transform = own.transform, shown.user = own.user, shown.mask = own.mask;
     if (entry->has_tree())
-      shown.shape = InstanceGeometry{entry->tree};
+      shown.shape = InstanceGeometry{entry->following.tree()};
     else
       shown.shape = own.shape;
     if (entry->mesh != nullptr) snapshot->meshes.push_back(entry->mesh);
   }
   if (geometries.size() == 1 && snapshot->shown.size() == 1 && geometries[0].transform.is_identity() &&
-      entries_[snapshot->shown[0]]->tree != nullptr) {
-    snapshot->accel = entries_[snapshot->shown[0]]->tree;
+      entries_[snapshot->shown[0]]->following.tree() != nullptr) {
+    snapshot->accel = entries_[snapshot->shown[0]]->following.tree();
     return snapshot;
   }
   BuildOptions options = options_;
@@ -281,7 +263,7 @@ bool DynamicAccel::move(Snapshot& snapshot, std::uint32_t mask) const {
   bool is_tree = false;  // the last one has a tree and is not moved
   for (const auto& entry : entries_) {
     if (entry == nullptr || !entry->enabled) continue;
-    if (snapshot.accel == entry->tree) return false;
+    if (snapshot.accel == entry->following.tree()) return false;
     const Geometry& before = snapshot.accel->geometries[places.size()];
     const bool is_seen = (entry->geometry.mask & mask) != 0;
     const bool is_instance =

@@ -8,6 +8,7 @@
 #include "accel/build/mesh_source.h"
 #include "accel/build/tree_store.h"
 #include "accel/closest.h"
+#include "accel/dynamic_accel.h"
 #include "accel/geometry_bounds.h"
 #include "core/parallel.h"
 
@@ -262,6 +263,19 @@ std::shared_ptr<Accel> clone_tree(const Accel& accel) {
   clone->stats = accel.stats;
   for (int k = 0; k < 2; ++k) clone->no_closest_point[k] = accel.no_closest_point[k];
   return clone;
+}
+
+void FollowingTree::set(std::shared_ptr<Accel> tree) {
+  tree_ = std::move(tree), plan_ = nullptr;
+  built_cost_ = tree_->stats.sah_cost;
+}
+
+bool FollowingTree::follow(const TriangleMesh& mesh, bool parallel) {
+  if (plan_ == nullptr) plan_ = std::make_shared<const RefitPlan>(*tree_, mesh, parallel);
+  if (!plan_->is_possible()) return false;
+  if (!is_unshared(tree_)) tree_ = clone_tree(*tree_);
+  std::get<MeshGeometry>(tree_->geometries[0].shape).mesh = &mesh;
+  return refit(*tree_, *plan_, parallel) && tree_->stats.sah_cost <= DynamicAccel::kMostGrowth * built_cost_;
 }
 
 }  // namespace oktett

@@ -1,6 +1,9 @@
 #pragma once
 /// \file Trees whose vertices move and whose links stay.
 
+#include <atomic>
+#include <memory>
+
 #include "accel/accel_data.h"
 
 namespace oktett {
@@ -49,5 +52,31 @@ bool move_instances(Accel& accel, const std::vector<Placement>& places, bool par
 
 /// The same tree of one mesh in memory of its own.
 std::shared_ptr<Accel> clone_tree(const Accel& accel);
+
+/// A tree of one mesh that follows its vertices: it is refitted until the cost of a ray has grown by more
+/// than DynamicAccel::kMostGrowth since it was built.
+class FollowingTree {
+ public:
+  /// Null: there is none.
+  const std::shared_ptr<Accel>& tree() const { return tree_; }
+  /// Begins anew with a tree that was built.
+  void set(std::shared_ptr<Accel> tree);
+  /// Fits the tree to `mesh`, which has the triangles of the one that it was built of and must outlive it. If
+  /// somebody else holds the tree, it becomes another one. Returns false if it has to be built.
+  bool follow(const TriangleMesh& mesh, bool parallel);
+
+ private:
+  std::shared_ptr<Accel> tree_;
+  std::shared_ptr<const RefitPlan> plan_;  ///< made for the first refit
+  double built_cost_ = 0;
+};
+
+/// Whether nobody but so many owners holds what `pointer` points to, nor still reads it in another thread.
+template <class T>
+bool is_unshared(const std::shared_ptr<T>& pointer, long owners = 1) {
+  if (pointer.use_count() > owners) return false;
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return true;
+}
 
 }  // namespace oktett

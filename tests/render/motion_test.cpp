@@ -9,10 +9,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/build/refit.h"
 #include "render/geometry.h"
 #include "render/moments.h"
 #include "render/sampling/owen_sobol.h"
 #include "tests/render/test_scenes.h"
+#include "tests/support/dice.h"
+#include "tests/support/grid_triangles.h"
 
 namespace oktett::motion_test {
 namespace {
@@ -282,6 +285,65 @@ TEST(MotionBlur, ObjectsKeepTheirNumbers) {
   const auto &a = still.find("geomID.I")->ids, &b = moving.find("geomID.I")->ids;
   for (std::size_t i = 0; i < a.size(); ++i) same += a[i] == b[i] ? 1 : 0;
   EXPECT_GE(same, a.size() - 2);
+}
+
+/// A grid that waves, then is crumpled: vertices change places at random.
+MeshShape waving_grid(std::uint32_t n) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  auto bending = std::make_shared<MeshBending>();
+  Dice<float> dice(5);
+  bending->poses.resize(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    MeshPose& pose = bending->poses[k];
+    pose.time = static_cast<double>(k);
+    for (std::uint32_t i = 0; i < (n + 1) * (n + 1); ++i) {
+      const float x = static_cast<float>(i % (n + 1)) / static_cast<float>(n),
+                  y = static_cast<float>(i / (n + 1)) / static_cast<float>(n);
+      pose.positions.push_back(k == 2 ? dice.vec(1) : Vec3f{x, y, k == 0 ? 0 : 0.2f * std::sin(9 * x)});
+    }
+  }
+  mesh->positions = bending->poses[0].positions;
+  add_grid_triangles(*mesh, n);
+  MeshShape shape;
+  shape.mesh = std::move(mesh), shape.bending = std::move(bending);
+  return shape;
+}
+
+TEST(MotionBlur, BentMeshesHaveTheHitsOfTreesBuiltForTheirTime) {
+  const MeshShape shape = waving_grid(20);
+  Scene scene = bare_scene();
+  add_object(scene, shape, add_material(scene, diffuse({0.5f, 0.5f, 0.5f})));
+  World world = build_world(scene);
+  ASSERT_EQ(world.moving.size(), 1u);
+  Dice<float> dice(7);
+  int hit = 0;
+  std::vector<std::shared_ptr<const Accel>> kept;
+  for (const double time : {0.1, 0.5, 1.0, 1.05, 1.5, 2.0, 0.7}) {
+    const auto links = [&] { return world.moving[0].following->tree(); };
+    const std::shared_ptr<const Accel> before = links();
+    const double cost = stats(*before).sah_cost;
+    pose(world, time);
+    kept.push_back(before);
+    // While it waves, the tree is that of the flat grid.
+    if (time <= 1) {
+      EXPECT_LE(stats(*links()).sah_cost, 1.5 * cost) << time;
+    }
+    const std::shared_ptr<const TriangleMesh> mesh = mesh_at(shape, time);
+    const auto fresh = build_accel({{MeshGeometry{mesh.get()}, {}, 0}});
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3f from = dice.vec(2);
+      const Ray ray{from, 0, Vec3f{dice(), dice(), 0} - from, 100};
+      const Hit expected = closest_hit(*fresh, ray), found = closest_hit(*world.moving[0].shape, ray);
+      EXPECT_EQ(found, expected) << time << ' ' << i;
+      hit += expected.valid() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hit, 15000);
+  // Trees of other moments stay as they are.
+  const std::shared_ptr<const TriangleMesh> flat = mesh_at(shape, 0);
+  const Ray down{{0.31f, 0.42f, 1}, 0, {0, 0, -1}, 10};
+  EXPECT_EQ(closest_hit(*kept[0], down),
+            closest_hit(*build_accel({{MeshGeometry{flat.get()}, {}, 0}}), down));
 }
 
 TEST(MotionBlur, PicturesHaveTheSameBits) {
