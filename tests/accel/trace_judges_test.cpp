@@ -6,8 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "accel/accel_data.h"
 #include "accel/trace_scene.h"
 #include "core/error.h"
+#include "tests/accel/instance_cases.h"
 #include "tests/support/dice.h"
 #include "tests/support/limits.h"
 #include "verify/oracles/mesh.h"
@@ -97,6 +99,42 @@ TEST(TraceJudges, EachHitIsJudgedOnceUntilOneIsAccepted) {
         }
       }
     }
+}
+
+TEST(TraceJudges, TrianglesInSeveralLeavesAreJudgedOnce) {
+  const TriangleMesh mesh = soup(300, 3, 0.2);
+  const Geometry geometry{MeshGeometry{&mesh}, {}, kNoId};
+  const BuildOptions best{.quality = BuildQuality::best};
+  const std::shared_ptr<const Accel> tree = build_accel({geometry}, best);
+  ASSERT_TRUE(tree->pieces);
+  std::vector<std::uint32_t> asked;
+  const Told none([&](SceneHit& h) { return asked.push_back(h.primitive), false; });
+  SceneGeometry whole = thing(geometry), shown = thing(geometry);
+  shown.tree = tree;
+  Dice<float> dice(3);
+  std::size_t most = 0;
+  for (SceneGeometry g : {whole, shown}) {
+    g.closest_filter = g.any_filter = &none;
+    const Scene plain = build_trace_scene({g}, best);
+    for (const Scene& scene : {plain, build_trace_scene({thing(SceneInstance{plain, {Affine{}}, {}}, 70)})})
+      for (int i = 0; i < 300; ++i) {
+        const Vec3f from = dice.vec(3);
+        const Ray ray{from, 0, dice.vec(1) - from, kInf};
+        std::vector<Hit> hits;
+        all_hits(*tree, ray, hits);
+        std::vector<std::uint32_t> expected;
+        for (const Hit& hit : hits) expected.push_back(hit.item);
+        std::ranges::sort(expected);
+        for (const bool any : {false, true}) {
+          asked.clear();
+          EXPECT_FALSE(any ? any_hit(*scene, ray) : closest_hit(*scene, ray).valid());
+          std::ranges::sort(asked);
+          EXPECT_EQ(asked, expected);
+          most = std::max(most, asked.size());
+        }
+      }
+  }
+  EXPECT_GT(most, 3u);
 }
 
 TEST(TraceJudges, FiltersOfOtherQueriesAreNotAsked) {
