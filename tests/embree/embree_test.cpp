@@ -489,5 +489,40 @@ TEST(Embree, ThreadsCommitTogetherAndHaveErrorsOfTheirOwn) {
   EXPECT_EQ(device.error(), RTC_ERROR_NONE);
 }
 
+TEST(Embree, ThreadsTraceAndCommitSideBySide) {
+  Device device;
+  Scene shared(device), growing(device);
+  const auto reject_even = [](const RTCFilterFunctionNArguments* a) {
+    if (RTCHitN_geomID(a->hit, a->N, 0) % 2 == 0) a->valid[0] = 0;
+  };
+  for (int i = 0; i < 40; ++i) {
+    const RTCGeometry g = square(device, static_cast<float>(i), i % 3 == 0 ? static_cast<float>(i) : NAN);
+    rtcSetGeometryIntersectFilterFunction(g, reject_even);
+    shared.add(g);
+  }
+  rtcCommitScene(shared);
+  std::atomic<int> right = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&, t] {
+      Scene own(device);
+      for (int i = 0; i < 25; ++i) {
+        // Rejected hits, in one scene of all threads.
+        right += shared.closest({0.5f, 0.25f, 100}, {0, 0, -1}, 0.5f).hit.geomID == 39;
+        right += shared.occluded({0.5f, 0.25f, 100}, {0, 0, -1});
+        // A scene of the thread's own, of the same device.
+        own.add(square(device, static_cast<float>(i)));
+        rtcCommitScene(own);
+        right += own.closest({0.5f, 0.25f, 100}, {0, 0, -1}).hit.geomID == static_cast<unsigned>(i);
+        // Geometries found while others are attached.
+        const unsigned number = growing.add(square(device, static_cast<float>(t)));
+        right += rtcGetGeometryThreadSafe(growing, number) != nullptr;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(right, 4 * 25 * 4);
+  EXPECT_EQ(device.error(), RTC_ERROR_NONE);
+}
+
 }  // namespace
 }  // namespace oktett::embree_test
