@@ -19,6 +19,8 @@ struct HitWithNormal : Hit {
 /// Says which hits of a ray count, while it is on its way: what does not count hides nothing.
 class HitJudge {
  public:
+  /// Not inline: what describes the class stands in the baseline's code alone.
+  virtual ~HitJudge();
   /// Hits of one place in the structure, none beyond end(), in no order. Returns true if one of them counts,
   /// the nearest that does; end() is its distance then, or less.
   virtual bool offer(HitWithNormal* hits, int count) = 0;
@@ -26,9 +28,6 @@ class HitJudge {
   virtual float end() const = 0;
   /// Room for crossings while none are offered.
   virtual HitList& scratch() = 0;
-
- protected:
-  ~HitJudge() = default;
 };
 
 /// What counts without being judged.

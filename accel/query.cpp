@@ -68,6 +68,8 @@ Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa) {
 
 bool any_hit(const Accel& accel, const Ray& ray, Isa isa) { return trace_code(isa).any_hit_one(accel, ray); }
 
+HitJudge::~HitJudge() = default;
+
 // ---- All hits.
 
 void HitList::push(const Hit& hit, float turn) { hits_.push_back({hit, turn}); }

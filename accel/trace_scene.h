@@ -89,6 +89,8 @@ class UserShape {
   virtual Box bounds(std::uint32_t primitive, std::uint32_t key) const = 0;
   /// Whether a primitive may have a hit behind one that a filter rejects; then it is asked for it.
   virtual bool has_several_hits() const { return false; }
+  /// Whether what it finds outside of the range of the ray counts, too; else such hits are left out.
+  virtual bool may_leave_range() const { return false; }
   /// Looks for the nearest hit with ray.tmin < t <= ray.tmax: sets t, u, v and the normal of `hit`, whose
   /// other members are set already and may be changed, and returns true; else false.
   virtual bool closest_hit(std::uint32_t primitive, const Ray& ray, const RayContext& context,

@@ -51,6 +51,8 @@ class UserCallbacks final : public UserShape {
   explicit UserCallbacks(const Geometry& geometry);
   std::uint32_t primitive_count() const override { return count_; }
   std::uint32_t key_count() const override { return keys_; }
+  /// Embree takes over what a program writes: where a ray begins on its surface, t = tnear, or inside.
+  bool may_leave_range() const override { return true; }
   Box bounds(std::uint32_t primitive, std::uint32_t key) const override;
   bool closest_hit(std::uint32_t primitive, const Ray& ray, const RayContext& context,
                    SceneHit& hit) const override;

@@ -373,7 +373,9 @@ class SceneTracer {
       if (!(Q == Query::closest ? shape.closest_hit(primitive, rest, context, found)
                                 : shape.any_hit(primitive, rest, context, found)))
         return false;
-      if (!(rest.tmin < found.t && found.t <= ray.tmax) || !std::isfinite(found.t)) return false;
+      if (std::isnan(found.t)) return false;
+      if (!shape.may_leave_range() && !(rest.tmin < found.t && found.t <= ray.tmax && std::isfinite(found.t)))
+        return false;
       if (!filters_ || judge(geometry, ray, {&found, 1}) != nullptr) return true;
       if (!shape.has_several_hits()) return false;
     }

@@ -489,6 +489,33 @@ TEST(Embree, ThreadsCommitTogetherAndHaveErrorsOfTheirOwn) {
   EXPECT_EQ(device.error(), RTC_ERROR_NONE);
 }
 
+/// What a callback writes as the end of its ray, if it is no NaN; it always names its geometry.
+float written = 0;
+
+TEST(Embree, HitsOfCallbacksCountWhereverTheyAre) {
+  Device device;
+  Scene scene(device);
+  const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, 1);
+  rtcSetGeometryMask(g, ~0u);
+  rtcSetGeometryBoundsFunction(
+      g, [](const RTCBoundsFunctionArguments* a) { *a->bounds_o = {-2, -2, -2, 0, 2, 2, 2, 0}; }, nullptr);
+  rtcSetGeometryIntersectFunction(g, [](const RTCIntersectFunctionNArguments* a) {
+    if (!std::isnan(written)) RTCRayN_tfar(RTCRayHitN_RayN(a->rayhit, a->N), a->N, 0) = written;
+    RTCHitN* const hit = RTCRayHitN_HitN(a->rayhit, a->N);
+    RTCHitN_geomID(hit, a->N, 0) = a->geomID, RTCHitN_primID(hit, a->N, 0) = a->primID;
+  });
+  scene.add(g);
+  rtcCommitScene(scene);
+  // On the surface where the ray begins, behind its origin, without an end, and as it was.
+  for (const float t : {1.0f, 0.0f, -1.0f, kInf, std::numeric_limits<float>::quiet_NaN()}) {
+    written = t;
+    const RTCRayHit r = scene.closest({0, 0, 0}, {0, 0, 1});
+    EXPECT_EQ(r.hit.geomID, 0u) << t;
+    EXPECT_EQ(r.ray.tfar, std::isnan(t) ? kInf : t);
+  }
+}
+
 TEST(Embree, ThreadsTraceAndCommitSideBySide) {
   Device device;
   Scene shared(device), growing(device);
