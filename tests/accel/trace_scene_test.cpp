@@ -417,6 +417,29 @@ TEST(TraceScenes, DistortedSpheresMirroredMeshesAndCombinationsAreNamedAndHaveNo
   }
 }
 
+TEST(TraceScenes, WhatIsNearerThanAnInstanceHasItsOwnNormal) {
+  // The box of the instance begins before the combination, what a ray hits there lies behind it.
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const Vec3f& p : {Vec3f{-5, 20, 0}, {-5, 21, 0}, {-5, 20, 1}, {4, -3, -3}, {5, 6, -3}, {6, -3, 6}})
+    mesh->positions.push_back(p);
+  for (std::uint32_t i = 0; i < 6; ++i) mesh->indices.push_back(i);
+  const auto box = std::make_shared<CsgExpression>();
+  box->op = CsgOp::subtract, box->children.resize(2);
+  box->children[0].solids = {{BoxShape{}, {}, 1}};
+  box->children[1].solids = {{SpheresShape{{{{9, 9, 9}, 1}}}, {}, 2}};
+  const Scene child = build_trace_scene({thing(Geometry{MeshGeometry{mesh.get()}, {}, kNoId}, 5)});
+  const Scene scene =
+      build_trace_scene({thing(shown(child), 1), thing(Geometry{CsgGeometry{box}, {}, kNoId}, 2)});
+  const SceneHit near = closest_hit(*scene, along_x(0.1f, 0.2f));
+  EXPECT_EQ(near.geometry, 2u);
+  EXPECT_EQ(near.t, 8);
+  EXPECT_EQ(normalize(near.normal), (Vec3f{-1, 0, 0}));
+  const SceneHit behind = closest_hit(*scene, along_x(2.1f, 0.2f));
+  EXPECT_EQ(behind.geometry, 5u);
+  EXPECT_EQ(behind.normal,
+            cross(mesh->positions[4] - mesh->positions[3], mesh->positions[5] - mesh->positions[3]));
+}
+
 TEST(TraceScenes, QuadsAreFacesOfTwoTriangles) {
   // A unit square: a, b, c, d.
   auto mesh = std::make_shared<TriangleMesh>();

@@ -185,7 +185,9 @@ class SoloTraversal {
     if (candidate_ == kNoCandidate) return {};
     if constexpr (Q == Query::any || kJudged) return {{ray_.tmax, 0, 0, 0, kNoId}};
     if (candidate_ != kDecidedHit) return decide(candidate_);
-    return {state_.hit(0), inside_.normal, inside_.has_normal && state_.path[0] != kNoId};
+    // Something that is in no instance may have been nearer.
+    const Hit hit = state_.hit(0);
+    return {hit, inside_.normal, inside_.has_normal && hit == static_cast<const Hit&>(inside_)};
   }
 
  private:
@@ -215,8 +217,10 @@ class SoloTraversal {
       const HitWithNormal hit =
           trace_one_with_normal<A>(child, ray_inside<Instance, A>(instance, load_rays(state)));
       accept_inside(instance, state, hit);
-      if (hit.valid() && state.item[0] == hit.item && state.path[0] == outer_path(instance, hit.instance))
-        inside_ = hit;
+      if (!hit.valid()) return true;
+      HitWithNormal here = hit;
+      here.instance = outer_path(instance, hit.instance);
+      if (state.hit(0) == static_cast<const Hit&>(here)) inside_ = here;
       return true;
     });
   }
