@@ -91,6 +91,10 @@ struct Keys {
   Transform transform;
   Turning turning;
 
+  // Clang 14 deduces the types of no aggregate.
+  Keys(std::uint32_t keys, bool turns, Transform transform_of, Turning turning_of)
+      : count(keys), turn(turns), transform(transform_of), turning(turning_of) {}
+
   Affine at(const KeyTime& time) const {
     const std::uint32_t next = std::min(time.key + 1, count - 1);
     const double f = static_cast<double>(time.f);
