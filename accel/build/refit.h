@@ -61,8 +61,8 @@ class FollowingTree {
   const std::shared_ptr<Accel>& tree() const { return tree_; }
   /// Begins anew with a tree that was built.
   void set(std::shared_ptr<Accel> tree);
-  /// Fits the tree to `mesh`, which has the triangles of the one that it was built of and must outlive it. If
-  /// somebody else holds the tree, it becomes another one. Returns false if it has to be built.
+  /// Refits the tree to `mesh`, which has the triangles of the one that it was built of and must outlive it.
+  /// A tree that somebody else holds is copied before. Returns false if the tree has to be built.
   bool follow(const TriangleMesh& mesh, bool parallel);
 
  private:

@@ -133,8 +133,7 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   const auto add = [&](std::uint32_t g, std::uint32_t index, Geometry geometry) {
     geometry.mask = ~0u, geometry.user = scene.geometries[g].number;
     fixed.push_back(std::move(geometry));
-    const SceneGeometry& own = scene.geometries[g];
-    scene.fixed_geometries.push_back({{g, index}, own.number, 0, own.faces.get(), own.user, {}});
+    scene.fixed_geometries.push_back({{g, index}, {}});
   };
   const auto instance = [](const TraceScene& child, const Affine& transform) {
     Geometry geometry;
@@ -162,11 +161,9 @@ void build_fixed(TraceScene& scene, const BuildOptions& options) {
   scene.has_pieces |= scene.fixed->pieces;
   scene.bounds.grow(scene.fixed->bounds);
   for (std::size_t g = 0; g < scene.fixed_geometries.size(); ++g) {
-    FixedGeometry& own = scene.fixed_geometries[g];
-    own.first_item = scene.fixed->first_item[g];
     const auto* const shape = std::get_if<MeshGeometry>(&scene.fixed->geometries[g].shape);
     if (shape != nullptr && scene.fixed->frames[g].identity)
-      own.normals = normals_of(*shape->mesh, options.parallel);
+      scene.fixed_geometries[g].normals = normals_of(*shape->mesh, options.parallel);
   }
 }
 

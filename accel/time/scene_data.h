@@ -32,13 +32,9 @@ struct ItemTable {
   std::uint32_t count() const { return first.back(); }
 };
 
-/// A geometry of the fixed structure, and what names its hits.
+/// A geometry of the fixed structure.
 struct FixedGeometry {
   ItemTable::Place place;  ///< in TraceScene::geometries, and which of an array of instances it is
-  std::uint32_t number;    ///< SceneGeometry::number
-  std::uint32_t first_item = 0;
-  const FaceMap* faces;
-  void* user;
   /// The normals of its triangles, if it is a mesh that stands as it is: a hit then reads one place in memory
   /// instead of six.
   Column<Vec3f> normals;

@@ -441,15 +441,14 @@ bool is_plain(const TraceScene& scene, std::span<const RayContext> contexts) {
 SceneHit plain_hit(const TraceScene& scene, const Ray& ray, const HitWithNormal& hit) {
   if (!hit.valid()) return {};
   if (hit.instance == kNoId) {
-    const FixedGeometry& own =
-        scene.fixed_geometries[scene.fixed_geometries.size() == 1 ? 0 : scene.fixed->geometry_of(hit.item)];
-    const std::uint32_t triangle = hit.item - own.first_item;
+    const std::uint32_t g = scene.fixed->geometry_of(hit.item);
+    const FixedGeometry& own = scene.fixed_geometries[g];
     if (!own.normals.empty()) {
+      const std::uint32_t triangle = hit.item - scene.fixed->first_item[g];
       SceneHit out;
       out.t = hit.t, out.u = hit.u, out.v = hit.v;
       out.normal = hit.has_normal ? hit.normal : own.normals[triangle];
-      out.geometry = own.number, out.primitive = triangle, out.user = own.user;
-      if (own.faces != nullptr) own.faces->to_face(out.primitive, out.u, out.v);
+      name_face(out, scene.geometries[own.place.geometry], triangle);
       return out;
     }
   }
