@@ -15,6 +15,7 @@
 #include "core/mesh_geometry.h"
 #include "core/random.h"
 #include "render/camera.h"
+#include "render/look/coarse_mesh.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/sampling/warp.h"
 
@@ -64,6 +65,11 @@ Camera fit_mesh(const TriangleMesh& mesh, const Vec3d& forward, const Vec3d& up,
 
 // ---- A triangle mesh as rays see it, to find out what it is.
 
+/// Of a mesh of more triangles a coarse copy is explored: a tree over all would take as long to build, and as
+/// much memory, as that of the picture.
+constexpr std::size_t kMostExplored = 16'000'000;
+constexpr int kCoarseCells = 512;
+
 class MeshExplorer {
  public:
   /// The mesh must outlive it.
@@ -84,15 +90,18 @@ class MeshExplorer {
   std::vector<std::uint32_t> triangles_by_area(std::uint32_t count) const;
 
  private:
+  const TriangleMesh coarse_;  ///< empty if the mesh itself is explored
   const TriangleMesh& mesh_;
   std::shared_ptr<const Accel> accel_;
   Box box_;
   double size_;
 };
 
-MeshExplorer::MeshExplorer(const TriangleMesh& mesh) : mesh_(mesh) {
+MeshExplorer::MeshExplorer(const TriangleMesh& mesh)
+    : coarse_(mesh.triangle_count() > kMostExplored ? coarse_copy(mesh, kCoarseCells) : TriangleMesh{}),
+      mesh_(coarse_.indices.empty() ? mesh : coarse_) {
   std::vector<Geometry> geometries(1);
-  geometries[0].shape = MeshGeometry{&mesh, false, TriangleTest::watertight};
+  geometries[0].shape = MeshGeometry{&mesh_, false, TriangleTest::watertight};
   BuildOptions options;
   options.quality = BuildQuality::fast;
   accel_ = build_accel(std::move(geometries), options);
