@@ -89,6 +89,8 @@ enum class BuildQuality : std::uint8_t {
              ///< split
   best,  ///< the fastest to trace: triangles are split wherever it lowers the cost; several times slower to
          ///< build
+  compact,  ///< as balanced, but leaves share corners wherever that is possible: less memory, slower to
+            ///< trace; a tree whose vertices move is built again
 };
 
 /// How a structure is built. No hit depends on it but for `mask`, and as BuildQuality says.
@@ -98,6 +100,9 @@ struct BuildOptions {
   /// Geometries without any of these bits are left out. The others keep their numbers, and the items and
   /// paths of hits are those of a structure of all, unless combinations or lists of instances are left out.
   std::uint32_t mask = ~0u;
+  /// A structure of more primitives is built in parts of about half as many, one after the other. So a build
+  /// takes 80 bytes for each of these beside the structure, and not for all.
+  std::size_t together = std::size_t{1} << 25;
 };
 
 /// Sizes and quality of a built structure, without those of the structures it holds instances of.

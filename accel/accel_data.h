@@ -16,7 +16,7 @@
 #include "core/platform.h"
 #include "kernels/closed_forms.h"
 #include "kernels/exact/exact_pool.h"
-#include "kernels/triangle/triangle.h"
+#include "kernels/triangle/triangle_block.h"
 
 namespace oktett {
 
@@ -164,6 +164,9 @@ class Accel {
   /// [1]: if an instance shows this structure distorted.
   std::string no_closest_point[2];
   std::unique_ptr<PointAnswers> answers;  ///< not null
+
+  /// Leaf `number` of the blocks.
+  OKTETT_INLINE TriangleLeaf triangles(std::uint32_t number) const { return {blocks.data(), number}; }
 
   OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
 

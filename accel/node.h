@@ -8,17 +8,17 @@
 
 namespace oktett {
 
-/// The number of a child: of a node, of a block of triangles, or of an entry in the leaf table. Blocks of
-/// triangles are by far the most frequent leaves, so they need no table.
+/// The number of a child: of a node, of a leaf of triangles, or of an entry in the leaf table. Leaves of
+/// triangles are by far the most frequent, so they need no table.
 class NodeRef {
  public:
-  static constexpr std::uint32_t kMaxBlocks = 1u << 27;
+  static constexpr std::uint32_t kMaxTriangleLeaves = 1u << 27;
 
   NodeRef() = default;
   static NodeRef node(std::uint32_t index) { return NodeRef(index); }
-  /// A block of `count` triangles, 1 to 8, tested by the watertight test.
-  static NodeRef triangles(std::uint32_t block, int count) {
-    return NodeRef(kLeaf | static_cast<std::uint32_t>(count - 1) << 27 | block);
+  /// A TriangleLeaf of `count` triangles, 1 to 8, tested by the watertight test.
+  static NodeRef triangles(std::uint32_t leaf, int count) {
+    return NodeRef(kLeaf | static_cast<std::uint32_t>(count - 1) << 27 | leaf);
   }
   /// An entry of the leaf table. Whether it is one of spheres shows in the number, so that rays in flight
   /// need not look it up to know.
@@ -35,11 +35,12 @@ class NodeRef {
   bool is_none() const { return bits_ == none().bits_; }
   bool is_way_out() const { return bits_ == way_out().bits_; }
   std::uint32_t node_index() const { return bits_; }
-  std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
+  /// The number of a TriangleLeaf.
+  std::uint32_t triangle_leaf() const { return bits_ & (kMaxTriangleLeaves - 1); }
   int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }
   std::uint32_t table_index() const { return bits_ & (kNoSpheres - 1); }
-  /// The number as it is stored: nodes from 0 on, blocks from 2^31 on, table entries of spheres from 3 * 2^30
-  /// on, those of other kinds from 7 * 2^29 on.
+  /// The number as it is stored: nodes from 0 on, leaves of triangles from 2^31 on, table entries of spheres
+  /// from 3 * 2^30 on, those of other kinds from 7 * 2^29 on.
   std::uint32_t bits() const { return bits_; }
   static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
 
@@ -62,8 +63,8 @@ struct alignas(64) BvhNode {
 };
 static_assert(sizeof(BvhNode) == 256);
 
-/// A leaf that is not a block of watertight triangles: `count` items of one kind from `begin` in the kind's
-/// pool (for triangles: in one block, tested as `test` says).
+/// A leaf that is not one of watertight triangles: `count` items of one kind from `begin` in the kind's pool
+/// (for triangles: TriangleLeaf number `begin`, tested as `test` says).
 struct LeafEntry {
   std::uint32_t begin = 0;
   std::uint16_t count = 0;

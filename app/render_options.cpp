@@ -46,7 +46,7 @@ constexpr const char* kLooks[] = {"studio", "clay", "normals", "wire"};
 constexpr const char* kViewpoints[] = {"auto", "outside", "inside"};
 constexpr const char* kUps[] = {"x", "y", "z", "-x", "-y", "-z"};
 /// In the order of BuildQuality.
-constexpr const char* kQualities[] = {"fast", "balanced", "best"};
+constexpr const char* kQualities[] = {"fast", "balanced", "best", "compact"};
 
 /// The index of `word` in a list of names. Throws Error if it is not in the list.
 template <std::size_t N>
@@ -150,7 +150,7 @@ BuildOptions parse_bvh_option(const std::string& quality) {
   BuildOptions options;
   if (!quality.empty())
     options.quality = static_cast<BuildQuality>(
-        index_of("--bvh: unknown quality", quality, kQualities, "fast, balanced or best"));
+        index_of("--bvh: unknown quality", quality, kQualities, "fast, balanced, best or compact"));
   return options;
 }
 

@@ -114,6 +114,7 @@ void Scene::commit() {
     if (made.mesh != nullptr) bytes += made.mesh->bytes();
   }
   BuildOptions options;
+  if ((flags & RTC_SCENE_FLAG_COMPACT) != 0) options.quality = BuildQuality::compact;
   if (quality == RTC_BUILD_QUALITY_LOW || (flags & RTC_SCENE_FLAG_DYNAMIC) != 0)
     options.quality = BuildQuality::fast;
   if (quality == RTC_BUILD_QUALITY_HIGH) options.quality = BuildQuality::best;

@@ -650,10 +650,12 @@ static void bend(World& world, MovingObject& object, double time, const BuildOpt
     return;
   }
   FollowingTree& following = *object.following;
+  BuildOptions followed = options;  // packed corners cannot be moved
+  if (followed.quality == BuildQuality::compact) followed.quality = BuildQuality::balanced;
   if (following.tree() == nullptr || shape.test != TriangleTest::watertight ||
       !following.follow(*object.mesh, options.parallel))
     following.set(std::const_pointer_cast<Accel>(build_accel(
-        {{MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user}}, options)));
+        {{MeshGeometry{object.mesh.get(), shape.smooth, shape.test}, {}, object.user}}, followed)));
   object.shape = following.tree();
 }
 

@@ -129,6 +129,10 @@ constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
+/// So many references of a range, and at least one of kMostSkipped, are binned to find a plane: more find
+/// none that is better.
+constexpr std::size_t kSampled = 1u << 13;
+constexpr std::size_t kMostSkipped = 8;
 
 /// A spatial split is tried only if the children of the best object split overlap by more than this part of
 /// the scene's surface (Stich et al. 2009, section 4.5).
@@ -166,7 +170,7 @@ struct Range {
 class Builder {
  public:
   Builder(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
-          const BuildOptions& options, const BuildKernels& kernels)
+          const BuildOptions& options, const BuildKernels& kernels, const TreePart& part)
       : arrays_(arrays),
         triangles_(triangles),
         unit_(scene_unit(bounds)),
@@ -174,7 +178,8 @@ class Builder {
         effort_(effort_of(options.quality)),
         parallel_(options.parallel),
         kernels_(kernels),
-        phase_("building the tree", {}, arrays.count),
+        phase_("building the tree", part.name, arrays.count),
+        depth_(part.depth),
         nodes_(arrays) {}
 
   BinaryTree run() {
@@ -183,15 +188,17 @@ class Builder {
     arrays_.populate(arrays_.corners, n, parallel_);
     if (n > effort_.sweep) arrays_.populate(arrays_.more_refs, n, parallel_);
     nodes_.take(1);
-    Range all{0, n, arrays_.refs, arrays_.more_refs, {}, 0, arrays_.room};
+    // The arrays may have been made for more.
+    const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
+    Range all{0, n, arrays_.refs, arrays_.more_refs, {}, 0, std::min(room, arrays_.room)};
     bound(all);
     SubtreeCost cost;
     if (effort_.cells && n > effort_.sweep) {
       sort_by_cells(arrays_, all.centers, parallel_);
       std::swap(all.from, all.to);
-      build_cells(all, 1, 0, cost);
+      build_cells(all, depth_, 0, cost);
     } else {
-      build(all, 1, 0, cost);
+      build(all, depth_, 0, cost);
     }
     return {arrays_.nodes, arrays_.items, arrays_.corners, pieces_};
   }
@@ -298,17 +305,19 @@ class Builder {
     std::vector<Bins> more(chunks.count - 1);
     Bins first;
     const auto bins = [&](std::size_t c) -> Bins& { return c == 0 ? first : more[c - 1]; };
+    const std::size_t every = std::clamp<std::size_t>(r.size() / kSampled, 1, kMostSkipped);
     Split best;
     // The remaining depth must suffice for splits in half.
     if (depth + std::bit_width(r.size()) + 7 < kMaxDepth) {
       chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
-        kernels_.bin({r.from + r.begin + begin, end - begin, grid, &bins(c)});
+        kernels_.bin({r.from + r.begin + begin, end - begin, grid, &bins(c), every});
       });
       best = find(grid, chunks.count, bins);
     }
-    if (effort_.spatial > 0 && best.axis >= 0 && split_space(r, grid, best, chunks.count, bins, left, right))
+    if (effort_.spatial > 0 && best.axis >= 0 &&
+        split_space(r, grid, best, chunks.count, bins, every, left, right))
       return;
-    if (best.axis >= 0) return partition(r, grid, best, chunks, bins, left, right);
+    if (best.axis >= 0) return partition(r, grid, best, chunks, left, right);
     const std::size_t half = balanced_half(r.size());
     PrimRef *const from = r.from + r.begin, *const middle = from + half;
     std::copy(from, middle, r.to + r.first);
@@ -331,7 +340,7 @@ class Builder {
   /// Makes a spatial split if the children of the object split `object` would overlap and it costs less.
   template <class BinsOf>
   bool split_space(const Range& r, const Grid& grid, const Split& object, std::size_t chunks,
-                   const BinsOf& bins, Range& left, Range& right) {
+                   const BinsOf& bins, std::size_t every, Range& left, Range& right) {
     if (r.room() == r.size()) return false;
     Extent side[2];
     for (std::size_t c = 0; c < chunks; ++c)
@@ -342,9 +351,10 @@ class Builder {
     overlap.lo = max(overlap.lo, other.lo), overlap.hi = min(overlap.hi, other.hi);
     const double area = half_area(overlap);
     if (!(area > least_overlap_) || area < effort_.overlap * half_area(all)) return false;
-    const double object_cost =
-        half_area(side[0].box()) * blocks_of(count_of(object, false, grid, chunks, bins)) +
-        half_area(other) * blocks_of(count_of(object, true, grid, chunks, bins));
+    const auto blocks = [&](bool on_right) {
+      return blocks_of(static_cast<std::uint32_t>(every) * count_of(object, on_right, grid, chunks, bins));
+    };
+    const double object_cost = half_area(side[0].box()) * blocks(false) + half_area(other) * blocks(true);
     const SpatialSplit s =
         find_spatial(r.from + r.begin, r.size(), all, triangles_, effort_.every_axis, parallel_);
     if (s.axis < 0 || !(s.cost < object_cost)) return false;
@@ -396,14 +406,14 @@ class Builder {
     return best;
   }
 
-  template <class BinsOf>
-  void partition(const Range& r, const Grid& grid, const Split& s, const Chunks& chunks, const BinsOf& bins,
-                 Range& left, Range& right) {
+  void partition(const Range& r, const Grid& grid, const Split& s, const Chunks& chunks, Range& left,
+                 Range& right) {
     std::vector<std::size_t> lefts(chunks.count + 1, 0);
-    for (std::size_t c = 0; c < chunks.count; ++c) {
-      lefts[c + 1] = lefts[c];
-      for (int b = 0; b <= s.bin; ++b) lefts[c + 1] += bins(c).count[s.axis][b];
-    }
+    if (chunks.count > 1)
+      chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
+        lefts[c + 1] = kernels_.count_left({r.from + r.begin + begin, end - begin, grid, s});
+      });
+    for (std::size_t c = 0; c < chunks.count; ++c) lefts[c + 1] += lefts[c];
     std::vector<PartitionJob> jobs(chunks.count);
     chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
       PartitionJob& job = jobs[c];
@@ -414,7 +424,9 @@ class Builder {
       job.grid = grid, job.split = s;
       kernels_.partition(job);
     });
-    share_room(r, lefts[chunks.count], r.size() - lefts[chunks.count], left, right);
+    std::size_t all_left = 0;
+    for (const PartitionJob& job : jobs) all_left += job.lefts;
+    share_room(r, all_left, r.size() - all_left, left, right);
     for (const PartitionJob& job : jobs)
       left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
   }
@@ -428,6 +440,7 @@ class Builder {
   std::atomic<bool> pieces_{false};  ///< some item has several references
   const BuildKernels& kernels_;
   Phase phase_;
+  const int depth_;
   NodeSupply nodes_;
 };
 
@@ -437,7 +450,7 @@ Effort effort_of(BuildQuality quality) {
   if (quality == BuildQuality::fast) return {8, 256, 32, true, 0, 0, false};
   // In scanned meshes the overlap stays below 0.3, so that they are built without spatial splits; in
   // buildings it is greater near the root, where a split gains most.
-  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0.3, 0.4, false};
+  if (quality != BuildQuality::best) return {16, 256, 64, false, 0.3, 0.4, false};
   return {32, 32, 32, false, 0.3, 0, true};
 }
 
@@ -454,8 +467,8 @@ float scene_unit(const Box& bounds) {
 }
 
 BinaryTree build_binary(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
-                        const BuildOptions& options, const BuildKernels& kernels) {
-  return Builder(arrays, triangles, bounds, options, kernels).run();
+                        const BuildOptions& options, const BuildKernels& kernels, const TreePart& part) {
+  return Builder(arrays, triangles, bounds, options, kernels, part).run();
 }
 
 }  // namespace oktett

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/build/build_parts.h"
 #include "accel/build/mesh_source.h"
 #include "accel/build/refit.h"
 #include "accel/build/tree_store.h"
@@ -12,6 +13,7 @@
 #include "accel/geometry_bounds.h"
 #include "accel/winding/winding_field.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
@@ -375,6 +377,17 @@ void add_references(Accel& accel, const Usable& usable, const MeshSource& meshes
   others.clear();
 }
 
+/// Whether there is memory for a tree is asked for so many triangles or more.
+constexpr std::size_t kMuchWork = 4'000'000;
+
+/// The geometries whose triangles are in the tree.
+std::vector<std::uint32_t> usable_meshes(const Accel& accel, const Usable& usable) {
+  std::vector<std::uint32_t> meshes;
+  for (std::uint32_t g = 0; g < accel.geometries.size(); ++g)
+    if (static_cast<Kind>(accel.kinds[g]) == Kind::triangle && usable[g]) meshes.push_back(g);
+  return meshes;
+}
+
 /// Makes tree, bounds and the order of the items, or takes them from the store.
 void make_tree(Accel& accel, const Usable& usable, ItemOrder& order, const BuildOptions& options) {
   Column<PrimRef> others;
@@ -385,9 +398,16 @@ void make_tree(Accel& accel, const Usable& usable, ItemOrder& order, const Build
   if (keeps && load_kept_tree(accel, order, others, key, *store)) return;
   {
     const MeshSource meshes(accel);
-    BuildArrays arrays(others.size() + accel.stats.triangles, effort_of(options.quality));
-    add_references(accel, usable, meshes, others, first_other, arrays, options.parallel);
-    build_tree(accel, arrays, meshes, order, options, build_kernels(available_isas().back()));
+    const BuildKernels& kernels = build_kernels(available_isas().back());
+    const std::size_t most = others.size() + accel.stats.triangles;
+    if (accel.stats.triangles >= kMuchWork) expect_memory(accel.stats.triangles, options, available_memory());
+    if (most > options.together) {
+      build_in_parts(accel, meshes, usable_meshes(accel, usable), others, order, options, kernels);
+    } else {
+      BuildArrays arrays(most, effort_of(options.quality));
+      add_references(accel, usable, meshes, others, first_other, arrays, options.parallel);
+      build_tree(accel, arrays, meshes, order, options, kernels);
+    }
   }
   if (keeps) store->keep(key, accel, order);
 }

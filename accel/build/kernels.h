@@ -98,8 +98,8 @@ class Sweep {
     return true;
   }
 
-  /// Numbers the corners of `count` <= 8 triangles for TriangleBlock::corners, in the order in which they
-  /// come; false if a block does not hold so many. refs[reference[i]] is triangle i.
+  /// Numbers the corners of `count` <= 8 triangles for TriangleBlock::Lists::corners, in the order in which
+  /// they come; false if a block does not hold so many. refs[reference[i]] is triangle i.
   bool pack_corners(const std::uint8_t* reference, std::uint32_t count, std::uint16_t* corners) const {
     constexpr std::uint32_t kAll = 3 * TriangleBlock::kSize;
     alignas(64) std::int32_t vertex[32] = {};
@@ -313,6 +313,20 @@ struct BuildCode {
     return select(F::M::from_bits(7), F::load(r.hi) - F::load(r.negative_lo), F(0.0f));
   }
 
+  /// Which side of a plane a reference is on, as its bin says.
+  struct Side {
+    int axis;
+    float plane, origin, scale;
+    OKTETT_INLINE Side(const Grid& g, const Split& s)
+        : axis(s.axis),
+          plane(static_cast<float>(s.bin + 1)),
+          origin(g.origin[s.axis]),
+          scale(g.scale[s.axis]) {}
+    OKTETT_INLINE bool is_left(const PrimRef& r) const {
+      return (r.hi[axis] - r.negative_lo[axis] - origin) * scale < plane;
+    }
+  };
+
   static void bin(const BinJob& job) {
     // Successive references tend to fall into the same bin, and reading what was just written is slow: two
     // sets of bins take turns.
@@ -335,17 +349,27 @@ struct BuildCode {
         ++out.count[axis][b];
       }
     };
-    const PrimRef* refs = job.refs;
-    const std::size_t count = job.count;
-    std::size_t i = 0;
-    for (; i + 1 < count; i += 2) add(refs[i], *job.out), add(refs[i + 1], other);
-    if (i < count) add(refs[i], other);
+    const PrimRef* const refs = job.refs;
+    const std::size_t step = job.every == 1 ? job.count : job.every * kBinGroup;
+    for (std::size_t begin = 0; begin < job.count; begin += step) {
+      const std::size_t end = std::min(job.count, job.every == 1 ? job.count : begin + kBinGroup);
+      std::size_t i = begin;
+      for (; i + 1 < end; i += 2) add(refs[i], *job.out), add(refs[i + 1], other);
+      if (i < end) add(refs[i], other);
+    }
     for (int axis = 0; axis < 3; ++axis)
       for (int b = 0; b < bins; ++b) {
         float* v = job.out->box[axis][b].v;
         max(B::load(other.box[axis][b].v), B::load(v)).store(v);
         job.out->count[axis][b] += other.count[axis][b];
       }
+  }
+
+  static std::size_t count_left(const CountJob& job) {
+    const Side side(job.grid, job.split);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < job.count; ++i) left += static_cast<std::size_t>(side.is_left(job.refs[i]));
+    return left;
   }
 
   static void bound(const PrimRef* refs, std::size_t count, Centers& out) {
@@ -365,9 +389,7 @@ struct BuildCode {
 
   static void partition(PartitionJob& job) {
     constexpr std::size_t kPiece = 256;  // bounds are computed of pieces that are still in the cache
-    const int axis = job.split.axis;
-    const float plane = static_cast<float>(job.split.bin + 1);
-    const float origin = job.grid.origin[axis], scale = job.grid.scale[axis];
+    const Side side(job.grid, job.split);
     const PrimRef* const refs = job.refs;
     const std::size_t count = job.count;
     // Places count from job.left.
@@ -376,9 +398,8 @@ struct BuildCode {
       const std::ptrdiff_t left_begin = left, right_end = right;
       const std::size_t end = count - i > kPiece ? i + kPiece : count;
       for (; i < end; ++i) {
-        const float c = (refs[i].hi[axis] - refs[i].negative_lo[axis] - origin) * scale;
         // Without a branch, which would be mispredicted half the time.
-        const std::ptrdiff_t is_left = c < plane;
+        const std::ptrdiff_t is_left = side.is_left(refs[i]);
         const std::ptrdiff_t to = (right - 1) ^ (((right - 1) ^ left) & -is_left);
         B::load(refs[i].negative_lo).store(job.left[to].negative_lo);
         left += is_left, right += is_left - 1;
@@ -386,6 +407,7 @@ struct BuildCode {
       bound(job.left + left_begin, static_cast<std::size_t>(left - left_begin), job.centers[0]);
       bound(job.left + right, static_cast<std::size_t>(right_end - right), job.centers[1]);
     }
+    job.lefts = static_cast<std::size_t>(left);
   }
 
   static void sweep(SweepJob& job) { Sweep<A>(job).run(); }
@@ -393,8 +415,8 @@ struct BuildCode {
 
 template <class A>
 const BuildKernels& build_kernels() {
-  static constexpr BuildKernels kernels = {BuildCode<A>::bin, BuildCode<A>::bound, BuildCode<A>::partition,
-                                           BuildCode<A>::sweep};
+  static constexpr BuildKernels kernels = {BuildCode<A>::bin, BuildCode<A>::count_left, BuildCode<A>::bound,
+                                           BuildCode<A>::partition, BuildCode<A>::sweep};
   return kernels;
 }
 

@@ -56,13 +56,29 @@ inline const MeshSource::Mesh& MeshSource::mesh_of(std::uint32_t item) const {
 
 void MeshSource::corners(std::uint32_t item, Vec3f (&v)[3]) const { corners(mesh_of(item), item, v); }
 
-Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const {
+std::size_t MeshSource::references(std::uint32_t geometry, std::size_t begin, std::size_t end, PrimRef* out,
+                                   Box& bounds) const {
   const MeshGeometry& shape = std::get<MeshGeometry>(accel_.geometries[geometry].shape);
   const Mesh& mesh = meshes_[geometry];
-  const std::size_t triangles = shape.mesh->triangle_count();
-  PrimRef* const refs = arrays.refs + arrays.count;
   const std::uint32_t kind =
       static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(shape.test) << 8;
+  const PrimRef* const first = out;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
+    Vec3f v[3];
+    corners(mesh, item, v);
+    if (!is_finite(v)) continue;
+    const Vec3f lo = min(min(v[0], v[1]), v[2]), hi = max(max(v[0], v[1]), v[2]);
+    bounds.lo = min(lo, bounds.lo), bounds.hi = max(hi, bounds.hi);
+    *out++ = {{-lo.x, -lo.y, -lo.z}, item, {hi.x, hi.y, hi.z}, kind};
+  }
+  return static_cast<std::size_t>(out - first);
+}
+
+Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const {
+  const std::size_t triangles =
+      std::get<MeshGeometry>(accel_.geometries[geometry].shape).mesh->triangle_count();
+  PrimRef* const refs = arrays.refs + arrays.count;
   arrays.populate(refs, triangles, parallel);
   struct Part {
     Box bounds;
@@ -71,18 +87,7 @@ Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool
   const Chunks chunks(triangles, kTrianglesTogether);
   std::vector<Part> parts(chunks.count);
   chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    Part& part = parts[c];
-    PrimRef* out = refs + begin;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
-      Vec3f v[3];
-      corners(mesh, item, v);
-      if (!is_finite(v)) continue;
-      const Vec3f lo = min(min(v[0], v[1]), v[2]), hi = max(max(v[0], v[1]), v[2]);
-      part.bounds.lo = min(lo, part.bounds.lo), part.bounds.hi = max(hi, part.bounds.hi);
-      *out++ = {{-lo.x, -lo.y, -lo.z}, item, {hi.x, hi.y, hi.z}, kind};
-      ++part.finite;
-    }
+    parts[c].finite = references(geometry, begin, end, refs + begin, parts[c].bounds);
   });
   // Close the gaps that the others left.
   Box bounds;
@@ -136,13 +141,13 @@ void MeshSource::fill(const std::uint32_t* items, const std::uint16_t* corners, 
     Vec3f v[3];
     this->corners(mesh_of(items[i]), items[i], v);
     if (i == 0)
-      for (int axis = 0; axis < 3; ++axis) std::ranges::fill(block.point[axis], v[0][axis]);
-    block.corners[i] = corners[i], block.item[i] = items[i];
+      for (int axis = 0; axis < 3; ++axis) std::fill_n(block.row(axis), TriangleBlock::kCorners, v[0][axis]);
+    block.first.corners[i] = corners[i], block.first.item[i] = items[i];
     for (int k = 0; k < 3; ++k)
-      for (int axis = 0; axis < 3; ++axis) block.point[axis][block.corner(k, i)] = v[k][axis];
+      for (int axis = 0; axis < 3; ++axis) block.row(axis)[corners[i] >> 4 * k & 15] = v[k][axis];
   }
-  for (int i = count; i < TriangleBlock::kSize; ++i) block.corners[i] = 0, block.item[i] = kNoId;
-  std::ranges::fill(block.padding, 0u);
+  for (int i = count; i < TriangleBlock::kSize; ++i) block.first.corners[i] = 0, block.first.item[i] = kNoId;
+  std::ranges::fill(block.top, 0);
 }
 
 void MeshSource::prefetch(const std::uint32_t* items, int count) const {

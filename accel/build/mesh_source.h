@@ -16,6 +16,11 @@ class MeshSource final : public TriangleSource {
   /// finite are left out. Returns their bounds.
   Box add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const;
 
+  /// Writes references to the triangles [begin, end) of a mesh geometry, those that are finite, and grows
+  /// `bounds` by them. Returns how many there are.
+  std::size_t references(std::uint32_t geometry, std::size_t begin, std::size_t end, PrimRef* out,
+                         Box& bounds) const;
+
   void note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const override;
   bool pack_corners(const std::uint32_t* items, int count, std::uint16_t* corners) const override;
   void fill(const std::uint32_t* items, const std::uint16_t* corners, int count,

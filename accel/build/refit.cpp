@@ -18,6 +18,9 @@ namespace {
 /// Nodes so many levels below the root are refitted by tasks of their own.
 constexpr int kTaskLevels = 3;
 
+/// The number of corner `k` of triangle `lane`.
+int corner_of(const TriangleBlock& block, int k, int lane) { return block.first.corners[lane] >> 4 * k & 15; }
+
 /// What a part of a tree has become.
 struct Part {
   Box box;
@@ -86,27 +89,30 @@ class CornerFit {
   bool failed() const { return failed_; }
 
   Part operator()(NodeRef ref, const Box&) const {
-    if (ref.is_triangles()) return block(ref.block(), ref.triangle_count());
+    if (ref.is_triangles()) return block(ref.triangle_leaf(), ref.triangle_count());
     const LeafEntry& leaf = accel_.leaves[ref.table_index()];
     return block(leaf.begin, leaf.count);
   }
 
  private:
-  /// The first `count` triangles of block number `number`.
-  Part block(std::uint32_t number, int count) const {
+  /// The first `count` triangles of a leaf, which has a block of its own.
+  Part block(std::uint32_t leaf, int count) const {
+    const std::uint32_t number = leaf / TriangleBlock::kLeaves;
     TriangleBlock& block = accel_.blocks[number];
     if (const std::uint32_t* const vertices = plan_.vertices(number))
       for (int n = 0; n < TriangleBlock::kCorners; ++n) {
         const Vec3f& p = mesh_.positions[vertices[n]];
-        block.point[0][n] = p.x, block.point[1][n] = p.y, block.point[2][n] = p.z;
+        block.x[n] = p.x, block.y[n] = p.y, block.z[n] = p.z;
       }
     else if (!move(block, count) && !pack(block, count))
       failed_ = true;
     Part part;
     float not_finite = 0;  // becomes NaN
     for (int axis = 0; axis < 3; ++axis) {
-      float lo = block.point[axis][0], hi = lo;
-      for (const float x : block.point[axis]) {
+      const float* const row = block.row(axis);
+      float lo = row[0], hi = lo;
+      for (int n = 0; n < TriangleBlock::kCorners; ++n) {
+        const float x = row[n];
         lo = x < lo ? x : lo, hi = x > hi ? x : hi;
         not_finite += x * 0;
       }
@@ -122,9 +128,9 @@ class CornerFit {
     std::uint32_t vertex[TriangleBlock::kCorners];
     unsigned known = 0;
     for (int i = 0; i < count; ++i) {
-      const std::uint32_t* index = &mesh_.indices[3 * std::size_t{block.item[i]}];
+      const std::uint32_t* index = &mesh_.indices[3 * std::size_t{block.first.item[i]}];
       for (int k = 0; k < 3; ++k) {
-        const int n = block.corner(k, i);
+        const int n = corner_of(block, k, i);
         const Vec3f& p = mesh_.positions[index[k]];
         if ((known >> n & 1) != 0) {
           if (vertex[n] != index[k] && std::memcmp(&mesh_.positions[vertex[n]], &p, sizeof p) != 0)
@@ -132,12 +138,12 @@ class CornerFit {
           continue;
         }
         known |= 1u << n, vertex[n] = index[k];
-        for (int axis = 0; axis < 3; ++axis) block.point[axis][n] = p[axis];
+        for (int axis = 0; axis < 3; ++axis) block.row(axis)[n] = p[axis];
       }
     }
     for (int n = 0; n < TriangleBlock::kCorners; ++n)
       if ((known >> n & 1) == 0)
-        for (int axis = 0; axis < 3; ++axis) block.point[axis][n] = block.point[axis][block.corner(0, 0)];
+        for (int axis = 0; axis < 3; ++axis) block.row(axis)[n] = block.row(axis)[corner_of(block, 0, 0)];
     return true;
   }
 
@@ -145,7 +151,7 @@ class CornerFit {
   bool pack(TriangleBlock& block, int count) const {
     std::uint32_t items[TriangleBlock::kSize];
     std::uint16_t corners[TriangleBlock::kSize];
-    std::copy(block.item, block.item + count, items);
+    std::copy(block.first.item, block.first.item + count, items);
     if (!source_.pack_corners(items, count, corners)) return false;
     source_.fill(items, corners, count, block);
     return true;
@@ -162,12 +168,12 @@ class CornerFit {
 std::size_t note(const TriangleBlock& block, const TriangleMesh& mesh, std::uint32_t* vertices) {
   std::fill(vertices, vertices + TriangleBlock::kCorners, kNoId);
   std::size_t count = 0;
-  bool several = false;
-  for (; count < TriangleBlock::kSize && block.item[count] != kNoId; ++count)
+  bool several = block.is_packed();
+  for (; !several && count < TriangleBlock::kSize && block.first.item[count] != kNoId; ++count)
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex =
-          mesh.indices[3 * std::size_t{block.item[count]} + static_cast<std::size_t>(k)];
-      std::uint32_t& known = vertices[block.corner(k, static_cast<int>(count))];
+          mesh.indices[3 * std::size_t{block.first.item[count]} + static_cast<std::size_t>(k)];
+      std::uint32_t& known = vertices[corner_of(block, k, static_cast<int>(count))];
       several |= known != kNoId && known != vertex;
       known = vertex;
     }

@@ -15,7 +15,7 @@ class RefitPlan {
   /// kept.
   RefitPlan(const Accel& accel, const TriangleMesh& mesh, bool parallel);
 
-  /// Whether the tree can be refitted: all triangles of the mesh stand in it, each once.
+  /// Whether the tree can be refitted: all triangles of the mesh stand in it, each once, in blocks of floats.
   bool is_possible() const { return is_possible_; }
   /// The vertices of the TriangleBlock::kCorners corners of a block; null if some corner is several vertices,
   /// which lay at one place when the block was made.

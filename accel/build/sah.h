@@ -8,7 +8,7 @@
 #include "accel/node.h"
 #include "core/isa.h"
 #include "core/platform.h"
-#include "kernels/triangle/triangle.h"
+#include "kernels/triangle/triangle_block.h"
 
 namespace oktett {
 
@@ -58,18 +58,28 @@ struct Grid {
   int bins = 0;
 };
 
-/// Bins refs[0, count).
+/// Bins refs[0, count): of each `every` times kBinGroup references the first kBinGroup.
 struct BinJob {
   const PrimRef* refs;
   std::size_t count;
   Grid grid;
   Bins* out;  ///< overwritten
+  std::size_t every = 1;
 };
+inline constexpr std::size_t kBinGroup = 8;
 
 /// A plane between bins `bin` and `bin` + 1 of an axis; axis < 0: none.
 struct Split {
   int axis = -1, bin = 0;
   float cost = std::numeric_limits<float>::infinity();
+};
+
+/// Counts those of refs[0, count) that are left of the plane.
+struct CountJob {
+  const PrimRef* refs;
+  std::size_t count;
+  Grid grid;
+  Split split;
 };
 
 /// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]), by the
@@ -81,7 +91,8 @@ struct PartitionJob {
   PrimRef* right;
   Grid grid;
   Split split;
-  Centers centers[2];  ///< grown
+  Centers centers[2];     ///< grown
+  std::size_t lefts = 0;  ///< out: how many went to the left
 };
 
 /// A node of the binary tree: a pair of children, or a leaf. 32 bytes.
@@ -147,7 +158,7 @@ struct SweepJob {
   const VertexNumbers* vertices;  ///< of the triangles among `refs`
   std::uint32_t first;            ///< place of the range among all items
   std::uint32_t* items;           ///< out: the items in the order of the leaves
-  std::uint16_t* corners;         ///< out: of the triangles among them, TriangleBlock::corners
+  std::uint16_t* corners;         ///< out: of the triangles among them, TriangleBlock::Lists::corners
   int depth;                      ///< of the range; the tree stays below kMaxDepth
   float unit;                     ///< a power of two by which the scene is of size 1
   Effort effort;
@@ -160,6 +171,7 @@ struct SweepJob {
 /// The parts of the builder that are compiled per instruction set. All sets build the same tree.
 struct BuildKernels {
   void (*bin)(const BinJob&);
+  std::size_t (*count_left)(const CountJob&);
   void (*bound)(const PrimRef*, std::size_t count, Centers&);  ///< grows bounds of centres
   void (*partition)(PartitionJob&);
   void (*sweep)(SweepJob&);

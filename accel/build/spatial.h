@@ -24,14 +24,24 @@ class TriangleSource : public TriangleCorners {
   /// Writes the numbers of their vertices for those of `count` references that are triangles. Only the same
   /// vertex of the same mesh has the same number.
   virtual void note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const = 0;
-  /// Numbers the corners of 1 to 8 items for TriangleBlock::corners, one number for those that have the same
-  /// bits; false if a block does not hold so many.
+  /// Numbers the corners of 1 to 8 items for TriangleBlock::Lists::corners, one number for those that have
+  /// the same bits; false if a block does not hold so many.
   virtual bool pack_corners(const std::uint32_t* items, int count, std::uint16_t* corners) const = 0;
   /// Fills a block with 1 to 8 items and their packed corners, of which number 0 comes first.
   virtual void fill(const std::uint32_t* items, const std::uint16_t* corners, int count,
                     TriangleBlock& block) const = 0;
   /// Prefetches the memory that fill() will need for these items.
   virtual void prefetch(const std::uint32_t* items, int count) const = 0;
+};
+
+/// For trees without blocks of triangles.
+class NoTriangles final : public TriangleSource {
+ public:
+  void note_vertices(const PrimRef*, std::uint32_t, VertexNumbers*) const override {}
+  bool pack_corners(const std::uint32_t*, int, std::uint16_t*) const override { return false; }
+  void fill(const std::uint32_t*, const std::uint16_t*, int, TriangleBlock&) const override {}
+  void prefetch(const std::uint32_t*, int) const override {}
+  void corners(std::uint32_t, Vec3f (&)[3]) const override {}
 };
 
 // ---- Spatial splits.

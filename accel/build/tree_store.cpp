@@ -20,16 +20,16 @@ std::uint64_t column_checksum(const Column<T>& column) {
   return block_checksum(column.data(), column.size() * sizeof(T));
 }
 
-/// Checks nodes and leaves. Each node, block and entry of the leaf table must be the child of exactly one
-/// node that stands before it, as the builder writes them. So no ray goes round in circles or takes more
-/// steps than there are nodes.
+/// Checks nodes and leaves. Each node, leaf of triangles and entry of the leaf table must be the child of
+/// exactly one node that stands before it, as the builder writes them. So no ray goes round in circles or
+/// takes more steps than there are nodes.
 class LinkCheck {
  public:
   LinkCheck(const Accel& accel, const ItemOrder& order)
       : accel_(accel),
         order_(order),
         depth_(accel.stats.nodes),
-        block_seen_(block_count(accel)),
+        triangles_seen_(TriangleBlock::kLeaves * block_count(accel)),
         leaf_seen_(accel.leaves.size()) {}
 
   bool run(int& depth) {
@@ -44,7 +44,11 @@ class LinkCheck {
     const auto all = [](const std::vector<bool>& seen) {
       return std::ranges::find(seen, false) == seen.end();
     };
-    return all(block_seen_) && all(leaf_seen_);
+    // Plain blocks have no second leaf.
+    for (std::size_t b = 0; b < block_count(accel_); ++b)
+      if (!accel_.blocks[b].is_packed() && !take(triangles_seen_, TriangleBlock::kLeaves * b + 1))
+        return false;
+    return all(triangles_seen_) && all(leaf_seen_);
   }
 
  private:
@@ -57,7 +61,7 @@ class LinkCheck {
       depth_[n] = static_cast<std::uint8_t>(std::min(depth, kMaxDepth + 1));
       return true;
     }
-    if (ref.is_triangles()) return take(block_seen_, ref.block());
+    if (ref.is_triangles()) return take(triangles_seen_, ref.triangle_leaf());
     if (!take(leaf_seen_, ref.table_index())) return false;
     const LeafEntry& leaf = accel_.leaves[ref.table_index()];
     return is_possible(leaf) && ref.is_spheres() == (leaf.kind == Kind::sphere);
@@ -68,10 +72,10 @@ class LinkCheck {
       return false;
     if (leaf.kind != Kind::triangle)
       return std::uint64_t{leaf.begin} + leaf.count <= order_[static_cast<int>(leaf.kind)].size();
-    return leaf.test <= TriangleTest::segura_feito && take(block_seen_, leaf.begin);
+    return leaf.test <= TriangleTest::segura_feito && take(triangles_seen_, leaf.begin);
   }
 
-  static bool take(std::vector<bool>& seen, std::uint32_t index) {
+  static bool take(std::vector<bool>& seen, std::size_t index) {
     if (index >= seen.size() || seen[index]) return false;
     seen[index] = true;
     return true;
@@ -80,17 +84,19 @@ class LinkCheck {
   const Accel& accel_;
   const ItemOrder& order_;
   std::vector<std::uint8_t> depth_;  ///< per node; 0: no parent has been found yet
-  std::vector<bool> block_seen_, leaf_seen_;
+  std::vector<bool> triangles_seen_, leaf_seen_;
 };
 
-/// Every lane of a block holds a triangle of some mesh, or nothing that a ray could hit.
-bool are_possible(const TriangleBlock& block, const Accel& accel) {
+/// Every lane of a leaf holds a triangle of some mesh, or nothing that a ray could hit.
+bool is_possible(const TriangleLeaf& leaf, const Accel& accel) {
   std::uint32_t first = 1, end = 0;
+  const bool is_packed = leaf.block().is_packed();
   for (int lane = 0; lane < TriangleBlock::kSize; ++lane) {
-    const std::uint32_t item = block.item[lane];
+    if (((leaf.corners()[lane] & TriangleBlock::kPacked) != 0) != is_packed) return false;
+    const std::uint32_t item = leaf.item(lane);
     if (item == kNoId) {
-      const int corner = block.corner(0, lane);
-      if (block.corner(1, lane) != corner || block.corner(2, lane) != corner) return false;
+      const int corner = leaf.corner(0, lane);
+      if (leaf.corner(1, lane) != corner || leaf.corner(2, lane) != corner) return false;
       continue;
     }
     if (item >= first && item < end) continue;
@@ -102,13 +108,19 @@ bool are_possible(const TriangleBlock& block, const Accel& accel) {
   return true;
 }
 
+/// The same for all leaves of block `b`.
+bool are_possible(const Accel& accel, std::size_t b) {
+  const auto first = static_cast<std::uint32_t>(TriangleBlock::kLeaves * b);
+  return is_possible(accel.triangles(first), accel) &&
+         (!accel.blocks[b].is_packed() || is_possible(accel.triangles(first + 1), accel));
+}
+
 bool blocks_are_possible(const Accel& accel) {
   using Blocks = tbb::blocked_range<std::size_t>;
   return tbb::parallel_reduce(
       Blocks(0, block_count(accel), 4096), true,
       [&](const Blocks& range, bool good) {
-        for (std::size_t i = range.begin(); good && i < range.end(); ++i)
-          good = are_possible(accel.blocks[i], accel);
+        for (std::size_t i = range.begin(); good && i < range.end(); ++i) good = are_possible(accel, i);
         return good;
       },
       [](bool a, bool b) { return a && b; });
@@ -168,6 +180,7 @@ void count_tree(Accel& accel, std::size_t nodes, std::size_t blocks) {
   AccelStats& s = accel.stats;
   s.nodes = nodes;
   s.leaves = accel.leaves.size() + blocks;
+  for (std::size_t b = 0; b < blocks; ++b) s.leaves += accel.blocks[b].is_packed();
   for (const LeafEntry& l : accel.leaves) s.leaves -= l.kind == Kind::triangle;
   s.node_bytes = nodes * sizeof(BvhNode);
   s.leaf_bytes = blocks * sizeof(TriangleBlock) + accel.leaves.size() * sizeof(LeafEntry);

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "accel/build/build_arrays.h"
+#include "accel/build/compact_blocks.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -41,7 +42,8 @@ class WideBuilder {
                    at[i].leaves + sizes[i].leaves, std::max(at[i].depth, sizes[i].depth)};
       blocks += sizes[i].blocks;
     }
-    if (blocks > NodeRef::kMaxBlocks) throw Error("too many triangles for one structure");
+    if (blocks > NodeRef::kMaxTriangleLeaves / TriangleBlock::kLeaves)
+      throw Error("too many triangles for one structure");
     accel_.nodes = VirtualArray<BvhNode>(at.back().nodes);
     accel_.blocks = VirtualArray<TriangleBlock>(at.back().blocks);
     populate(accel_.nodes.data(), at.back().nodes, parallel_);
@@ -153,8 +155,9 @@ class WideBuilder {
   NodeRef write_leaf(const BinaryNode& n, Sizes& next) const {
     std::uint32_t begin = n.link;
     if (n.kind() == Kind::triangle) {
-      begin = next.blocks++;
-      triangles_.fill(tree_.items + n.link, tree_.corners + n.link, n.count(), accel_.blocks[begin]);
+      TriangleBlock& block = accel_.blocks[next.blocks];
+      begin = TriangleBlock::kLeaves * next.blocks++;
+      triangles_.fill(tree_.items + n.link, tree_.corners + n.link, n.count(), block);
       if (!in_table(n)) return NodeRef::triangles(begin, n.count());
     }
     accel_.leaves[next.leaves] = {begin, static_cast<std::uint16_t>(n.count()), n.kind(), n.test()};
@@ -205,12 +208,13 @@ void order_pools(Accel& accel, const BinaryTree& tree, ItemOrder& order) {
 }  // namespace
 
 void build_tree(Accel& accel, const BuildArrays& arrays, const TriangleSource& triangles, ItemOrder& order,
-                const BuildOptions& options, const BuildKernels& kernels) {
+                const BuildOptions& options, const BuildKernels& kernels, const TreePart& part) {
   if (arrays.count == 0) return;
-  const BinaryTree tree = build_binary(arrays, triangles, accel.bounds, options, kernels);
+  const BinaryTree tree = build_binary(arrays, triangles, accel.bounds, options, kernels, part);
   accel.pieces = tree.pieces;
-  arrays.discard_references();
+  if (!part.reuses_arrays) arrays.discard_references();
   WideBuilder(accel, tree, triangles, options.parallel).run();
+  if (options.quality == BuildQuality::compact) compact_blocks(accel, options.parallel);
   order_pools(accel, tree, order);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The tree builder proper: primitive references in, nodes and leaves out.
 
+#include <string>
 #include <vector>
 
 #include "accel/accel_data.h"
@@ -14,17 +15,24 @@ namespace oktett {
 struct BinaryTree {
   const BinaryNode* nodes;
   const std::uint32_t* items;
-  const std::uint16_t* corners;  ///< of items that are triangles: TriangleBlock::corners
+  const std::uint16_t* corners;  ///< of items that are triangles: TriangleBlock::Lists::corners
   bool pieces;                   ///< triangles were split, so an item may stand in several leaves
 };
 
 /// The parameters of a quality.
 Effort effort_of(BuildQuality quality);
 
+/// A tree that becomes a part of another.
+struct TreePart {
+  int depth = 1;               ///< of its root, at most
+  std::string name;            ///< for whoever watches the build
+  bool reuses_arrays = false;  ///< the arrays of the build are for the next part, too
+};
+
 /// Builds the binary tree over the references, at least one, and uses them up; `bounds` are theirs. The
 /// same tree for any number of threads.
 BinaryTree build_binary(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
-                        const BuildOptions& options, const BuildKernels& kernels);
+                        const BuildOptions& options, const BuildKernels& kernels, const TreePart& part = {});
 
 /// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor
 /// vanish.
@@ -38,6 +46,6 @@ using ItemOrder = std::vector<std::uint32_t>[kKinds];
 /// accel.leaves, accel.root, accel.bounds and accel.stats. Leaves of closed-form shapes and instances are
 /// given as ranges of `order`: the caller lays out the pools so that element i of kind k is item order[k][i].
 void build_tree(Accel& accel, const BuildArrays& arrays, const TriangleSource& triangles, ItemOrder& order,
-                const BuildOptions& options, const BuildKernels& kernels);
+                const BuildOptions& options, const BuildKernels& kernels, const TreePart& part = {});
 
 }  // namespace oktett

@@ -9,16 +9,6 @@
 namespace oktett {
 namespace {
 
-/// A source of triangles for trees without blocks of them.
-class NoTriangles final : public TriangleSource {
- public:
-  void note_vertices(const PrimRef*, std::uint32_t, VertexNumbers*) const override {}
-  bool pack_corners(const std::uint32_t*, int, std::uint16_t*) const override { return false; }
-  void fill(const std::uint32_t*, const std::uint16_t*, int, TriangleBlock&) const override {}
-  void prefetch(const std::uint32_t*, int) const override {}
-  void corners(std::uint32_t, Vec3f (&)[3]) const override {}
-};
-
 class TimeTreeBuilder {
  public:
   TimeTreeBuilder(std::uint32_t keys, const TimeSource& source, TimeTree& tree)

@@ -102,22 +102,22 @@ class NearWalk {
         [&](NodeRef ref) { return accel.nodes[ref.node_index()].child; },
         [&](NodeRef ref) {
           if (ref.is_triangles())
-            visit(accel, accel.blocks[ref.block()], ref.triangle_count());
+            visit(accel, accel.triangles(ref.triangle_leaf()), ref.triangle_count());
           else
             visit(accel, accel.leaves[ref.table_index()]);
         });
   }
 
-  void visit(const Accel& accel, const TriangleBlock& block, int count) {
+  void visit(const Accel& accel, const TriangleLeaf& leaf, int count) {
     for (int lane = 0; lane < count; ++lane) {
       Box box;
-      for (int k = 0; k < 3; ++k) box.grow(block.vertex(k, lane));
-      if (is_near(box)) visit(accel, block.item[lane]);
+      for (int k = 0; k < 3; ++k) box.grow(leaf.vertex(k, lane));
+      if (is_near(box)) visit(accel, leaf.item(lane));
     }
   }
 
   void visit(const Accel& accel, const LeafEntry& leaf) {
-    if (leaf.kind == Kind::triangle) return visit(accel, accel.blocks[leaf.begin], leaf.count);
+    if (leaf.kind == Kind::triangle) return visit(accel, accel.triangles(leaf.begin), leaf.count);
     for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
       if (leaf.kind == Kind::instance)
         visit(accel, accel.instances[k].item);

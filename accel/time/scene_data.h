@@ -7,7 +7,7 @@
 
 #include "accel/time/time_tree.h"
 #include "accel/trace_scene.h"
-#include "kernels/triangle/triangle.h"
+#include "kernels/triangle/triangle_block.h"
 
 namespace oktett {
 

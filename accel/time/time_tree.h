@@ -11,7 +11,7 @@
 #include "accel/hit_sink.h"
 #include "accel/node.h"
 #include "core/pages.h"
-#include "kernels/triangle/triangle.h"
+#include "kernels/triangle/triangle_block.h"
 
 namespace oktett {
 

@@ -9,8 +9,8 @@ namespace oktett {
 /// -1 if the ray meets triangle `k` of a block from its front, 1 if from behind. The textbook tests do not
 /// tell.
 template <class A>
-OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1, A>& r) {
-  const auto corner = [&](int c, int axis) { return static_cast<double>(block.vertex(c, k)[axis]); };
+OKTETT_INLINE float turn_of(const TriangleLeaf& leaf, int k, const RayState<1, A>& r) {
+  const auto corner = [&](int c, int axis) { return static_cast<double>(leaf.vertex(c, k)[axis]); };
   double side = 0;
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3, z = (x + 2) % 3;
@@ -23,7 +23,7 @@ OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1,
 
 /// Appends all hits of a ray with the triangles of a block.
 template <class A>
-void collect_triangles(const Accel& accel, const TriangleBlock& block, int count, TriangleTest test,
+void collect_triangles(const Accel& accel, const TriangleLeaf& leaf, int count, TriangleTest test,
                        const RayState<1, A>& r, HitList& hits) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
@@ -31,20 +31,20 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
   HitLanes<F> h;
   unsigned lanes = (1u << count) - 1, front = 0;
   if (test == TriangleTest::watertight) {
-    lanes &= bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(load_triangles<F>(block))));
+    lanes &= bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(load_triangles<F>(leaf))));
     if (lanes == 0) return;
     typename F::M clockwise;
-    lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(block, 0, r.z_axis_of(0)),
+    lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(leaf, 0, r.z_axis_of(0)),
                                     ray.tmin, ray.tmax, h, clockwise));
     front = r.inv_dz[0] > 0 ? bits(clockwise) : ~bits(clockwise);
   } else {
-    lanes &= bits(textbook_test(test, ray, load_triangles<F>(block), h));
-    for (int k = 0; k < count; ++k) front |= (turn_of(block, k, r) < 0 ? 1u : 0u) << k;
+    lanes &= bits(textbook_test(test, ray, load_triangles<F>(leaf), h));
+    for (int k = 0; k < count; ++k) front |= (turn_of(leaf, k, r) < 0 ? 1u : 0u) << k;
   }
   if (lanes == 0) return;
   each_hit(lanes, h, [&](int k, float t, float u, float v) {
-    const bool entered = (front >> k & 1) != (is_mirrored(accel, block.item[k]) ? 1u : 0u);
-    hits.push({t, u, v, block.item[k], kNoId}, entered ? -1.0f : 1.0f);
+    const bool entered = (front >> k & 1) != (is_mirrored(accel, leaf.item(k)) ? 1u : 0u);
+    hits.push({t, u, v, leaf.item(k), kNoId}, entered ? -1.0f : 1.0f);
   });
 }
 
@@ -84,7 +84,7 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
 template <class A>
 void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits) {
   if (leaf.kind == Kind::triangle) {
-    collect_triangles(accel, accel.blocks[leaf.begin], leaf.count, leaf.test, r, hits);
+    collect_triangles(accel, accel.triangles(leaf.begin), leaf.count, leaf.test, r, hits);
   } else if (holds_instances(leaf.kind)) {
     each_instance(accel, leaf, [&](const auto& instance, const Accel& inner) {
       const auto outer = load_rays(r);
@@ -140,7 +140,7 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
       },
       [&](NodeRef leaf, unsigned) {
         if (leaf.is_triangles())
-          collect_triangles(accel, accel.blocks[leaf.block()], leaf.triangle_count(),
+          collect_triangles(accel, accel.triangles(leaf.triangle_leaf()), leaf.triangle_count(),
                             TriangleTest::watertight, r, hits);
         else
           collect_leaf(accel, accel.leaves[leaf.table_index()], r, hits);

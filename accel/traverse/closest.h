@@ -81,7 +81,7 @@ class ClosestSearch {
   OKTETT_INLINE void leaf(NodeRef ref, const PointPlace& at, float limit) {
     const double before = best_.d2;
     if (ref.is_triangles())
-      triangles(accel_.blocks[ref.block()], ref.triangle_count(), at, limit);
+      triangles(accel_.triangles(ref.triangle_leaf()), ref.triangle_count(), at, limit);
     else
       table_leaf(accel_.leaves[ref.table_index()], at);
     if (best_.d2 < before) found_ = ref;
@@ -89,7 +89,7 @@ class ClosestSearch {
 
   OKTETT_NOINLINE void table_leaf(const LeafEntry& leaf, const PointPlace& at) {
     if (leaf.kind == Kind::triangle)
-      return triangles(accel_.blocks[leaf.begin], leaf.count, at, at.limit(best_));
+      return triangles(accel_.triangles(leaf.begin), leaf.count, at, at.limit(best_));
     if (!holds_instances(leaf.kind)) return closest_in_leaf(accel_, leaf, at, best_);
     const std::uint32_t first = first_instance(leaf);
     for (std::uint32_t k = first; k < first + leaf.count; ++k)
@@ -99,8 +99,8 @@ class ClosestSearch {
   }
 
   /// The first `count` triangles of a block.
-  OKTETT_INLINE void triangles(const TriangleBlock& block, int count, const PointPlace& at, float limit) {
-    const TriangleLanes<F> t = load_triangles<F>(block);
+  OKTETT_INLINE void triangles(const TriangleLeaf& leaf, int count, const PointPlace& at, float limit) {
+    const TriangleLanes<F> t = load_triangles<F>(leaf);
     const auto least = [](const F& a, const F& b, const F& c) { return min(min(a, b), c); };
     const auto greatest = [](const F& a, const F& b, const F& c) { return max(max(a, b), c); };
     const Vec3<F> lo{least(t.a.x, t.b.x, t.c.x), least(t.a.y, t.b.y, t.c.y), least(t.a.z, t.b.z, t.c.z)};
@@ -108,18 +108,18 @@ class ClosestSearch {
                      greatest(t.a.z, t.b.z, t.c.z)};
     const F near = box_distances(at, lo, hi);
     const unsigned maybe = bits(near <= F(limit)) & ((2u << (count - 1)) - 1);
-    if (maybe != 0) decide(block, maybe, at);
+    if (maybe != 0) decide(leaf, maybe, at);
   }
 
   /// The triangles in `maybe` in double.
-  OKTETT_NOINLINE void decide(const TriangleBlock& block, unsigned maybe, const PointPlace& at) {
+  OKTETT_NOINLINE void decide(const TriangleLeaf& leaf, unsigned maybe, const PointPlace& at) {
     constexpr int N = kDoubleLanes<A>;
     using D = Simd<double, N, A>;
     const Vec3<D> p = broadcast<D>(at.world);
     for (int base = 0; base < TriangleBlock::kSize; base += N) {
       const unsigned part = maybe >> base & ((1u << N) - 1);
       if (part == 0) continue;
-      const TriangleLanes<Simd<float, N, A>> t = load_triangles<Simd<float, N, A>>(block, base);
+      const TriangleLanes<Simd<float, N, A>> t = load_triangles<Simd<float, N, A>>(leaf, base);
       Vec3<D> a = to_double(t.a), b = to_double(t.b), c = to_double(t.c);
       if (at.moved)
         a = map_point(at.to_world, a), b = map_point(at.to_world, b), c = map_point(at.to_world, c);
@@ -128,7 +128,7 @@ class ClosestSearch {
       d2.store(square);
       for (unsigned near = bits(d2 <= D(best_.d2)) & part; near != 0; near &= near - 1) {
         const int k = __builtin_ctz(near);
-        best_.keep(square[k], block.item[base + k], at.instance);
+        best_.keep(square[k], leaf.item(base + k), at.instance);
       }
     }
   }

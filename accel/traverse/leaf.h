@@ -7,6 +7,7 @@
 #include "accel/ray_state.h"
 #include "core/lanes.h"
 #include "kernels/closed/sphere.h"
+#include "kernels/triangle/triangle.h"
 
 namespace oktett {
 
@@ -138,29 +139,29 @@ OKTETT_INLINE typename F::M textbook_test(TriangleTest test, const RayLanes<F>& 
 
 /// One ray against the first `count` triangles of a block, all at once. A call: many places need it rarely.
 template <class A>
-OKTETT_NOINLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<1, A>& r) {
+OKTETT_NOINLINE void leaf_triangles_single(const TriangleLeaf& leaf, int count, RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
   const auto ray = broadcast_ray<N>(r);
-  const auto tri = load_triangles<F>(block);
+  const auto tri = load_triangles<F>(leaf);
   unsigned lanes = bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(tri))) & ((1u << count) - 1);
   if (lanes == 0) return;
   HitLanes<F> hit;
-  lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(block, 0, r.z_axis_of(0)),
-                                  ray.tmin, ray.tmax, hit));
-  if (lanes != 0) accept_single<N>(r, lanes, hit, block.item);
+  lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(leaf, 0, r.z_axis_of(0)), ray.tmin,
+                                  ray.tmax, hit));
+  if (lanes != 0) accept_single<N>(r, lanes, hit, leaf.items());
 }
 
 /// The same by one of the textbook tests.
 template <class A>
-OKTETT_NOINLINE void leaf_textbook_single(TriangleTest test, const TriangleBlock& block, int count,
+OKTETT_NOINLINE void leaf_textbook_single(TriangleTest test, const TriangleLeaf& leaf, int count,
                                           RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
   HitLanes<F> hit;
   const unsigned lanes =
-      bits(textbook_test(test, broadcast_ray<N>(r), load_triangles<F>(block), hit)) & ((1u << count) - 1);
-  if (lanes != 0) accept_single<N>(r, lanes, hit, block.item);
+      bits(textbook_test(test, broadcast_ray<N>(r), load_triangles<F>(leaf), hit)) & ((1u << count) - 1);
+  if (lanes != 0) accept_single<N>(r, lanes, hit, leaf.items());
 }
 
 /// How many primitives of S are tested against one ray at once.
@@ -188,24 +189,23 @@ OKTETT_INLINE void leaf_shape_single(const typename S::Pool& pool, std::uint32_t
 
 /// Decides triangle `k` of a block for the rays in `maybe`, which share the greatest axis `z`.
 template <int W, class A>
-OKTETT_INLINE void decide_packet(const TriangleBlock& block, int k, RayState<W, A>& r, unsigned maybe,
-                                 int z) {
+OKTETT_INLINE void decide_packet(const TriangleLeaf& leaf, int k, RayState<W, A>& r, unsigned maybe, int z) {
   using F = Simd<float, W, A>;
   HitLanes<F> hit;
-  const unsigned hits = maybe & bits(decide_watertight(load_shear(r, z), broadcast_triangle<F>(block, k, z),
+  const unsigned hits = maybe & bits(decide_watertight(load_shear(r, z), broadcast_triangle<F>(leaf, k, z),
                                                        F::load(r.tmin), F::load(r.tmax), hit));
-  if (hits != 0) accept_packet(r, hits, hit, block.item[k]);
+  if (hits != 0) accept_packet(r, hits, hit, leaf.item(k));
 }
 
 /// The rays in `lanes` against the triangles of a block. All triangles are prepared for the filter at once,
 /// in lanes; then each is tested against all rays.
 template <int W, class A>
-OKTETT_INLINE void leaf_triangles_packet(const TriangleBlock& block, int count, RayState<W, A>& r,
+OKTETT_INLINE void leaf_triangles_packet(const TriangleLeaf& leaf, int count, RayState<W, A>& r,
                                          unsigned lanes, int z) {
   using F = Simd<float, W, A>;
   using B = Simd<float, TriangleBlock::kSize, A>;
   alignas(64) float row[13][TriangleBlock::kSize];
-  const FilterTriangle<B> f = filter_triangle(load_triangles<B>(block));
+  const FilterTriangle<B> f = filter_triangle(load_triangles<B>(leaf));
   const Vec3<B>* vectors[4] = {&f.a, &f.e1, &f.e2, &f.n};
   for (int i = 0; i < 4; ++i)
     vectors[i]->x.store(row[3 * i]), vectors[i]->y.store(row[3 * i + 1]), vectors[i]->z.store(row[3 * i + 2]);
@@ -217,20 +217,20 @@ OKTETT_INLINE void leaf_triangles_packet(const TriangleBlock& block, int count, 
     };
     const FilterTriangle<F> tri{vec(0), vec(1), vec(2), vec(3), F(row[12][k])};
     const unsigned maybe = bits(filter_watertight(load_rays(r), d_max, tri)) & lanes;
-    if (maybe != 0) decide_packet(block, k, r, maybe, z);
+    if (maybe != 0) decide_packet(leaf, k, r, maybe, z);
   }
 }
 
 /// The same for rays that all start at `o`: the filter takes only three dot products with the direction per
 /// ray.
 template <int W, class A>
-OKTETT_INLINE void leaf_triangles_origin(const TriangleBlock& block, int count, RayState<W, A>& r,
+OKTETT_INLINE void leaf_triangles_origin(const TriangleLeaf& leaf, int count, RayState<W, A>& r,
                                          unsigned lanes, int z, const Vec3f& o, float d_max) {
   using F = Simd<float, W, A>;
   using B = Simd<float, TriangleBlock::kSize, A>;
   alignas(64) float row[12][TriangleBlock::kSize];
   const OriginTriangle<B> f =
-      origin_triangle(filter_triangle(load_triangles<B>(block)), broadcast<B>(o), B(d_max));
+      origin_triangle(filter_triangle(load_triangles<B>(leaf)), broadcast<B>(o), B(d_max));
   const Vec3<B>* vectors[3] = {&f.u, &f.v, &f.det};
   for (int i = 0; i < 3; ++i)
     vectors[i]->x.store(row[3 * i]), vectors[i]->y.store(row[3 * i + 1]), vectors[i]->z.store(row[3 * i + 2]);
@@ -242,20 +242,20 @@ OKTETT_INLINE void leaf_triangles_origin(const TriangleBlock& block, int count, 
     };
     const OriginTriangle<F> tri{vec(0), vec(1), vec(2), F(row[9][k]), F(row[10][k]), F(row[11][k])};
     const unsigned maybe = bits(filter_watertight(d, F::load(r.tmax), tri)) & lanes;
-    if (maybe != 0) decide_packet(block, k, r, maybe, z);
+    if (maybe != 0) decide_packet(leaf, k, r, maybe, z);
   }
 }
 
 /// The rays in `lanes` against the triangles of a block by one of the textbook tests.
 template <int W, class A>
-OKTETT_NOINLINE void leaf_textbook_packet(TriangleTest test, const TriangleBlock& block, int count,
+OKTETT_NOINLINE void leaf_textbook_packet(TriangleTest test, const TriangleLeaf& leaf, int count,
                                           RayState<W, A>& r, unsigned lanes) {
   using F = Simd<float, W, A>;
   for (int k = 0; k < count; ++k) {
     HitLanes<F> hit;
     const unsigned hits =
-        bits(textbook_test(test, load_rays(r), broadcast_triangle<F>(block, k), hit)) & lanes;
-    if (hits != 0) accept_packet(r, hits, hit, block.item[k]);
+        bits(textbook_test(test, load_rays(r), broadcast_triangle<F>(leaf, k), hit)) & lanes;
+    if (hits != 0) accept_packet(r, hits, hit, leaf.item(k));
   }
 }
 

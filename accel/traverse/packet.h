@@ -129,7 +129,7 @@ OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf
                                        unsigned lanes) {
   if constexpr (!std::is_same_v<A, ScalarIsa>) {
     if (leaf.kind == Kind::triangle) {
-      leaf_textbook_packet(leaf.test, accel.blocks[leaf.begin], leaf.count, r, lanes);
+      leaf_textbook_packet(leaf.test, accel.triangles(leaf.begin), leaf.count, r, lanes);
     } else if (holds_instances(leaf.kind)) {
       each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
         if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
@@ -188,12 +188,12 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
       }
       continue;
     } else if (e.ref.is_triangles()) {
-      const TriangleBlock& block = accel.blocks[e.ref.block()];
+      const TriangleLeaf leaf = accel.triangles(e.ref.triangle_leaf());
       if (interval.one_origin)
-        leaf_triangles_origin(block, e.ref.triangle_count(), r, active, z,
+        leaf_triangles_origin(leaf, e.ref.triangle_count(), r, active, z,
                               {interval.near_o[0], interval.near_o[1], interval.near_o[2]}, interval.d_max);
       else
-        leaf_triangles_packet(block, e.ref.triangle_count(), r, active, z);
+        leaf_triangles_packet(leaf, e.ref.triangle_count(), r, active, z);
     } else {
       table_leaf_packet<Q>(accel, accel.leaves[e.ref.table_index()], r, active);
     }

@@ -106,7 +106,7 @@ OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf
                                        Steps steps = {}) {
   if (leaf.kind == Kind::triangle) {
     steps.triangles(leaf.count);
-    return leaf_textbook_single(leaf.test, accel.blocks[leaf.begin], leaf.count, r);
+    return leaf_textbook_single(leaf.test, accel.triangles(leaf.begin), leaf.count, r);
   }
   if (holds_instances(leaf.kind))
     return each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
@@ -163,7 +163,7 @@ OKTETT_NOINLINE void traverse_single(const Accel& accel, RayState<1, A>& r, Node
     } else {
       if (ref.is_triangles()) {
         steps.triangles(ref.triangle_count());
-        leaf_triangles_single(accel.blocks[ref.block()], ref.triangle_count(), r);
+        leaf_triangles_single(accel.triangles(ref.triangle_leaf()), ref.triangle_count(), r);
       } else {
         table_leaf_single<Q>(accel, accel.leaves[ref.table_index()], r, steps);
       }

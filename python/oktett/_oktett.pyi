@@ -18,7 +18,7 @@ PointField = Union[
     Literal["distance", "point", "object", "primitive", "instance", "uv", "normal", "texcoord", "color"], str
 ]
 InsideRule = Literal["crossings", "winding"]
-Quality = Literal["fast", "balanced", "best"]
+Quality = Literal["fast", "balanced", "best", "compact"]
 
 def set_threads(count: int) -> None: ...
 def isa() -> str: ...

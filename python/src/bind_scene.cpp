@@ -22,13 +22,15 @@ using FileBytes = std::map<std::string, py::bytes>;
 /// Grows with what pickles hold.
 constexpr int kPickleVersion = 4;
 
-const std::pair<const char*, BuildQuality> kQualities[] = {
-    {"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}};
+const std::pair<const char*, BuildQuality> kQualities[] = {{"fast", BuildQuality::fast},
+                                                           {"balanced", BuildQuality::balanced},
+                                                           {"best", BuildQuality::best},
+                                                           {"compact", BuildQuality::compact}};
 
 BuildQuality parse_quality(const std::string& name) {
   for (const auto& [known, quality] : kQualities)
     if (name == known) return quality;
-  throw py::value_error("quality: expected 'fast', 'balanced' or 'best', found '" + name + "'");
+  throw py::value_error("quality: expected 'fast', 'balanced', 'best' or 'compact', found '" + name + "'");
 }
 
 const char* quality_name(BuildQuality quality) { return kQualities[static_cast<int>(quality)].first; }
@@ -241,7 +243,8 @@ text: the document, see the scene file format.
 name: what errors call it. Files that it names are looked for in the folder of that name.
 files: contents (bytes) of files that the text names, by these names; they need not exist.
 definitions: values for ${name} in the text.
-quality: of the acceleration structure: "fast" to build, "balanced", or "best" to trace.
+quality: of the acceleration structure: "fast" to build, "balanced", "best" to trace, or
+"compact", in less memory.
 
 Raises ValueError with name, line and column for what the format does not allow, OSError for a file that
 cannot be read.)";

@@ -52,9 +52,9 @@ class TreeWalk {
   void visit(NodeRef ref, const Box& box, int level) {
     depth = std::max(depth, level);
     if (ref.is_triangles()) {
-      const TriangleBlock& block = accel_.blocks[ref.block()];
+      const TriangleLeaf block = accel_.triangles(ref.triangle_leaf());
       for (int i = 0; i < ref.triangle_count(); ++i) {
-        ++count[block.item[i]];
+        ++count[block.item(i)];
         for (int k = 0; k < 3; ++k) EXPECT_TRUE(box.contains(block.vertex(k, i)));
       }
       return;
@@ -83,16 +83,16 @@ void expect_whole_tree(const Accel& accel, std::size_t items) {
 int expect_corners(const Accel& accel, const TriangleMesh& mesh) {
   int most = 0;
   for (std::size_t b = 0; b < block_count(accel); ++b) {
-    const TriangleBlock& block = accel.blocks[b];
+    const TriangleLeaf block = accel.triangles(static_cast<std::uint32_t>(TriangleBlock::kLeaves * b));
     int count = 0;
     for (int lane = 0; lane < TriangleBlock::kSize; ++lane) {
-      if (block.item[lane] == kNoId) {
-        EXPECT_EQ(block.corners[lane], 0);
+      if (block.item(lane) == kNoId) {
+        EXPECT_EQ(block.corners()[lane], 0);
         continue;
       }
       ++count;
       for (int k = 0; k < 3; ++k) {
-        const Vec3f &has = mesh.positions[mesh.indices[3 * block.item[lane] + static_cast<std::size_t>(k)]],
+        const Vec3f &has = mesh.positions[mesh.indices[3 * block.item(lane) + static_cast<std::size_t>(k)]],
                     got = block.vertex(k, lane);
         for (int axis = 0; axis < 3; ++axis)
           EXPECT_EQ(std::bit_cast<std::uint32_t>(got[axis]), std::bit_cast<std::uint32_t>(has[axis]));

@@ -121,7 +121,7 @@ struct Soup {
 TEST(ClosestPoint, IsThatOfAllTrianglesTried) {
   for (const float scale : {1.0f, 1e-32f, 1e-12f, 1e8f, 1e17f, 1e31f}) {
     const Soup soup(static_cast<std::uint64_t>(std::log10(scale) + 40), 700, 500, scale);
-    for (const BuildQuality quality : {BuildQuality::balanced, BuildQuality::best}) {
+    for (const BuildQuality quality : {BuildQuality::balanced, BuildQuality::best, BuildQuality::compact}) {
       const auto accel = build_accel({{MeshGeometry{&soup.mesh}, {}, kNoId}}, {.quality = quality});
       expect_closest(*accel, soup.points);
       if (HasFatalFailure()) FAIL() << "scale " << scale;

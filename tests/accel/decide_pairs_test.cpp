@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 #include <vector>
 
+#include "accel/build/compact_blocks.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/checks/compare_mode.h"
 
@@ -18,6 +21,17 @@ struct Pairs {
   HitLanes<Simd<float, N, ScalarIsa>> hit;
 };
 
+Vec3f vertex(const std::vector<TriangleBlock>& blocks, std::uint32_t triangle, int k) {
+  return TriangleLeaf(blocks.data(), triangle / 8).vertex(k, static_cast<int>(triangle % 8));
+}
+
+/// The number of a triangle that there is, of a block below `end`.
+std::uint32_t random_triangle(const std::vector<TriangleBlock>& blocks, TriangleRandom& random,
+                              std::uint32_t begin = 0, std::uint32_t end = 9) {
+  const std::uint32_t block = begin + random.below(end - begin);
+  return 16 * block + random.below(blocks[block].is_packed() ? 16 : 8);
+}
+
 /// Rays towards a point, an edge point or a corner of a triangle of `blocks` each.
 template <int N>
 Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& random,
@@ -28,11 +42,9 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& ra
   float column[8][N];
   const bool same = random.below(4) == 0;  // one triangle for all
   for (int i = 0; i < N; ++i) {
-    p.triangle[i] =
-        i > 0 && same ? p.triangle[0] : random.below(static_cast<std::uint32_t>(blocks.size()) * 8);
+    p.triangle[i] = i > 0 && same ? p.triangle[0] : random_triangle(blocks, random);
     Vec3f v[3];
-    for (int k = 0; k < 3; ++k)
-      v[k] = blocks[p.triangle[i] / 8].vertex(k, static_cast<int>(p.triangle[i] % 8));
+    for (int k = 0; k < 3; ++k) v[k] = vertex(blocks, p.triangle[i], k);
     const float w[3] = {random.sign(), random.below(2) ? random.sign() : 0, random.below(2) ? 0.5f : 0};
     const float sum = w[0] + w[1] + w[2];
     Ray r;
@@ -56,31 +68,39 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& ra
   return p;
 }
 
-std::vector<TriangleBlock> random_blocks(TriangleRandom& random) {
+enum class Form { plain, packed, mixed };
+
+/// Nine blocks. Corners that are packed together lie around (1, 1, 1), as not all are narrow enough.
+std::vector<TriangleBlock> random_blocks(TriangleRandom& random, Form form) {
   std::vector<TriangleBlock> blocks(9);
   for (TriangleBlock& b : blocks) {
-    for (auto& axis : b.point)
-      for (float& x : axis) x = random.sign();
+    const bool packed = form == Form::packed || (form == Form::mixed && random.below(2) == 0);
+    for (int axis = 0; axis < 3; ++axis)
+      for (float& x : std::span(b.row(axis), TriangleBlock::kCorners))
+        x = packed ? 1 + 0.4f * random.sign() : random.sign();
     for (int lane = 0; lane < 8; ++lane) {
       std::uint32_t n[3];
       do
         for (std::uint32_t& corner : n) corner = random.below(16);
       while (n[0] == n[1] || n[1] == n[2] || n[2] == n[0]);
       // Neighbours share corners, so that rays through edges and corners matter.
-      if (lane % 2 == 1)
-        n[0] = static_cast<std::uint32_t>(b.corner(1, lane - 1)),
-        n[1] = static_cast<std::uint32_t>(b.corner(0, lane - 1));
-      b.corners[lane] = static_cast<std::uint16_t>(n[0] | n[1] << 4 | n[2] << 8);
+      if (lane % 2 == 1) n[0] = b.first.corners[lane - 1] >> 4 & 15u, n[1] = b.first.corners[lane - 1] & 15u;
+      b.first.corners[lane] = static_cast<std::uint16_t>(n[0] | n[1] << 4 | n[2] << 8);
     }
+    if (!packed) continue;
+    TriangleBlock other = b, both;
+    std::reverse(other.first.corners, other.first.corners + TriangleBlock::kSize);
+    EXPECT_TRUE(pack_leaves(b, other, both));
+    b = both;
   }
   return blocks;
 }
 
 template <int N>
-void expect_same_as_alone() {
+void expect_same_as_alone(Form form) {
   using One = Simd<float, 1, ScalarIsa>;
   TriangleRandom random(static_cast<std::uint64_t>(N));
-  const std::vector<TriangleBlock> blocks = random_blocks(random);
+  const std::vector<TriangleBlock> blocks = random_blocks(random, form);
   int hits = 0, misses = 0, axes[3] = {};
   std::vector<Ray> rays;
   for (int repeat = 0; repeat < 20000 / N; ++repeat) {
@@ -98,7 +118,7 @@ void expect_same_as_alone() {
       HitLanes<One> h{One(0.0f), One(0.0f), One(0.0f)};
       const bool expected = any(decide_watertight(
           load_shear(alone, z),
-          broadcast_triangle<One>(blocks[p.triangle[i] / 8], static_cast<int>(p.triangle[i] % 8), z),
+          broadcast_triangle<One>({blocks.data(), p.triangle[i] / 8}, static_cast<int>(p.triangle[i] % 8), z),
           One(ray.tmin), One(ray.tmax), h));
       ASSERT_EQ((met >> i & 1) != 0, expected) << repeat << ' ' << i;
       ++(expected ? hits : misses), ++axes[z];
@@ -114,36 +134,42 @@ void expect_same_as_alone() {
 
 // Rays of all axes side by side get the bits that each gets alone.
 TEST(DecidePairs, SameAsOneRayAndOneTriangle) {
-  expect_same_as_alone<8>();
-  expect_same_as_alone<16>();
+  for (const Form form : {Form::plain, Form::packed, Form::mixed})
+    expect_same_as_alone<8>(form), expect_same_as_alone<16>(form);
 }
 
 // Triangles by their numbers: all the same, near each other, and too far apart for one index.
 TEST(DecidePairs, GathersNearAndFar) {
   constexpr int N = 16;
-  constexpr std::uint32_t kNear = 16;  // two blocks
+  constexpr std::uint32_t kNear = 32;  // two blocks
   TriangleRandom random(5);
-  const std::vector<TriangleBlock> blocks = random_blocks(random);
-  int near = 0, far = 0;
-  for (int repeat = 0; repeat < 3000; ++repeat) {
-    const std::uint32_t spread = repeat % 3 == 0 ? 1 : repeat % 3 == 1 ? kNear : 72;
-    const std::uint32_t first = random.below(72 / spread) * spread;
-    std::uint32_t ids[N], differing = 0;
-    for (std::uint32_t& id : ids) id = first + random.below(spread), differing |= id ^ ids[0];
-    ++(differing < kNear ? near : far);
-    const auto tri = gather_triangles<N, ScalarIsa, kNear>(blocks.data(), ids);
-    const Vec3<Simd<float, N, ScalarIsa>>* corners[3] = {&tri.a, &tri.b, &tri.c};
-    for (int k = 0; k < 3; ++k) {
-      float x[N], y[N], z[N];
-      corners[k]->x.store(x), corners[k]->y.store(y), corners[k]->z.store(z);
-      for (int i = 0; i < N; ++i) {
-        const Vec3f v = blocks[ids[i] / 8].vertex(k, static_cast<int>(ids[i] % 8));
-        ASSERT_TRUE(x[i] == v.x && y[i] == v.y && z[i] == v.z) << repeat << ' ' << i;
+  for (const Form form : {Form::plain, Form::packed, Form::mixed}) {
+    const std::vector<TriangleBlock> blocks = random_blocks(random, form);
+    int near = 0, far = 0;
+    for (int repeat = 0; repeat < 3000; ++repeat) {
+      const std::uint32_t begin = repeat % 3 == 2 ? 0 : 2 * random.below(4);
+      const std::uint32_t one = random_triangle(blocks, random, begin, begin + 2);
+      std::uint32_t ids[N], differing = 0;
+      for (std::uint32_t& id : ids) {
+        id = repeat % 3 == 0 ? one : random_triangle(blocks, random, begin, repeat % 3 == 1 ? begin + 2 : 9);
+        differing |= id ^ ids[0];
+      }
+      ++(differing < kNear ? near : far);
+      const auto tri = gather_triangles<N, ScalarIsa, kNear>(blocks.data(), ids);
+      const Vec3<Simd<float, N, ScalarIsa>>* corners[3] = {&tri.a, &tri.b, &tri.c};
+      for (int k = 0; k < 3; ++k) {
+        float x[N], y[N], z[N];
+        corners[k]->x.store(x), corners[k]->y.store(y), corners[k]->z.store(z);
+        for (int i = 0; i < N; ++i) {
+          const Vec3f v = vertex(blocks, ids[i], k);
+          ASSERT_TRUE(same_bits(x[i], v.x) && same_bits(y[i], v.y) && same_bits(z[i], v.z))
+              << repeat << ' ' << i;
+        }
       }
     }
+    EXPECT_GT(near, 1000);
+    EXPECT_GT(far, 500);
   }
-  EXPECT_GT(near, 1000);
-  EXPECT_GT(far, 500);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@
 namespace oktett::quality_test {
 namespace {
 
-constexpr BuildQuality kQualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best};
+constexpr BuildQuality kQualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best,
+                                       BuildQuality::compact};
 
 std::shared_ptr<const Accel> build(const TriangleMesh& mesh, BuildQuality quality, bool parallel = true) {
   return build_accel({{MeshGeometry{&mesh}, {}, kNoId}}, {quality, parallel});
@@ -75,16 +76,16 @@ class Leaves {
     ASSERT_LE(depth, kMaxDepth);
     if (ref.is_leaf()) {
       ASSERT_TRUE(ref.is_triangles());
-      const TriangleBlock& block = accel_.blocks[ref.block()];
+      const TriangleLeaf leaf = accel_.triangles(ref.triangle_leaf());
       ++blocks;
       for (int i = 0; i < TriangleBlock::kSize; ++i) {
         if (i >= ref.triangle_count()) {
-          EXPECT_EQ(block.item[i], kNoId);
+          EXPECT_EQ(leaf.item(i), kNoId);
           continue;
         }
         ++placed;
-        for (int k = 0; k < i; ++k) EXPECT_NE(block.item[i], block.item[k]);
-        boxes[block.item[i]].push_back(box);
+        for (int k = 0; k < i; ++k) EXPECT_NE(leaf.item(i), leaf.item(k));
+        boxes[leaf.item(i)].push_back(box);
       }
       return;
     }

@@ -16,7 +16,7 @@
 namespace oktett::trace_modes_test {
 namespace {
 
-constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::best};
+constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::best, BuildQuality::compact};
 
 TriangleMesh soup(int count, std::uint64_t seed, double scale, const Vec3d& shift = {}) {
   TriangleMesh m;

@@ -29,7 +29,7 @@ TEST(Watertight, ClosedMeshesAreCrossedConsistently) {
 TEST(Watertight, OtherTreesChangeNothing) {
   for (const OracleMesh& m : make_closed_meshes())
     for (const MeshPlacement& p : mesh_placements())
-      for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best}) {
+      for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best, BuildQuality::compact}) {
         const MeshTally t = verify_mesh(m, p, 512, available_isas(), {quality});
         EXPECT_EQ(t.failures(), 0u) << m.name << ' ' << p.name << ": " << t.failure;
       }

@@ -95,7 +95,7 @@ TEST_F(Completion, Bash) {
   EXPECT_EQ(bash("oktett render --integ", 3), Offers{"--integrator"});
   EXPECT_EQ(bash("oktett render --integrator p", 4), (Offers{"path", "position", "primitive"}));
   EXPECT_EQ(bash("oktett render --integrator = p", 5), (Offers{"path", "position", "primitive"}));
-  EXPECT_EQ(bash("oktett render --bvh =", 4), (Offers{"fast", "balanced", "best"}));
+  EXPECT_EQ(bash("oktett render --bvh =", 4), (Offers{"fast", "balanced", "best", "compact"}));
   EXPECT_EQ(bash("oktett render --spp ''", 4), Offers{});
   EXPECT_EQ(bash("oktett render a", 3), Offers{"a scene.yaml"});
   EXPECT_EQ(bash("oktett render -o m", 4), Offers{"mesh.obj"});

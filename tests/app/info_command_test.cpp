@@ -40,7 +40,7 @@ TEST(InfoCommand, TraceCountsWhatCameraRaysMeet) {
   dir.write("tetra.obj", kTetrahedron);
   const CommandResult plain = run_command(dir, {"info", "--json", "tetra.obj"});
   EXPECT_FALSE(contains(plain.out, "per_camera_ray"));
-  for (const char* quality : {"fast", "balanced", "best"}) {
+  for (const char* quality : {"fast", "balanced", "best", "compact"}) {
     const CommandResult traced =
         run_command(dir, {"info", "--json", "--trace", "--bvh", quality, "tetra.obj"});
     EXPECT_EQ(traced.status, 0) << traced.err;

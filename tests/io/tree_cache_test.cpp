@@ -18,6 +18,7 @@
 #include "io/cache/scene_cache.h"
 #include "tests/support/mixed_geometry.h"
 #include "tests/support/temp_dir.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett::tree_cache_test {
 namespace {
@@ -118,7 +119,8 @@ class TreeCache : public testing::Test {
 };
 
 TEST_F(TreeCache, TreesOfAllKindsComeBack) {
-  for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best})
+  for (const BuildQuality quality :
+       {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best, BuildQuality::compact})
     for (const int triangles : {1, 40, 3000}) {
       const MixedGeometry mixed(triangles, 3);
       set_tree_store(nullptr);
@@ -260,9 +262,11 @@ TEST_F(TreeCache, ImpossibleTreesAreRefused) {
       in_table([](NodeRef ref) {
         return ref.is_spheres() ? ref : NodeRef::leaf(ref.table_index(), Kind::sphere);
       }),
-      block([](TriangleBlock& b, const Accel& a) { b.item[0] = static_cast<std::uint32_t>(a.stats.items); }),
-      block([](TriangleBlock& b, const Accel&) { b.item[0] = 0; }),
-      block([](TriangleBlock& b, const Accel&) { b.item[0] = kNoId; }),
+      block([](TriangleBlock& b, const Accel& a) {
+        b.first.item[0] = static_cast<std::uint32_t>(a.stats.items);
+      }),
+      block([](TriangleBlock& b, const Accel&) { b.first.item[0] = 0; }),
+      block([](TriangleBlock& b, const Accel&) { b.first.item[0] = kNoId; }),
       [](Accel& a, ItemOrder&) { a.root = NodeRef::none(); },
       [](Accel& a, ItemOrder&) { a.root = NodeRef::node(1); },
       [](Accel& a, ItemOrder&) { a.bounds.lo.x = -std::numeric_limits<float>::infinity(); },
@@ -295,6 +299,51 @@ TEST_F(TreeCache, ImpossibleTreesAreRefused) {
     const auto accel = build_accel(mixed.geometries);
     EXPECT_EQ(store.counts.refusals, 1) << i;
     EXPECT_EQ(store.counts.keeps, 1) << i;
+    expect_same_tree(*accel, *good);
+  }
+}
+
+/// Compact trees whose blocks are no such blocks.
+TEST_F(TreeCache, ImpossibleBlocksAreRefused) {
+  const TriangleMesh ball = make_icosphere(5).mesh;
+  const std::vector<Geometry> geometries = {{MeshGeometry{&ball}, {}, kNoId}};
+  const BuildOptions compact{BuildQuality::compact};
+  CountingStore store(*cache_);
+  const auto good = build_accel(geometries, compact);
+  std::size_t packed = 0, plain = 0;
+  while (!good->blocks[packed].is_packed()) ++packed;
+  while (good->blocks[plain].is_packed()) ++plain;
+  const auto edit = [](std::size_t number, auto change) {
+    return [=](Accel& a, ItemOrder&) {
+      a.blocks = copy_blocks(a);
+      change(a.blocks[number]);
+      count_tree(a, a.stats.nodes, block_count(a));
+    };
+  };
+  const std::function<void(Accel&, ItemOrder&)> changes[] = {
+      edit(packed, [](TriangleBlock& b) { b.first.corners[0] &= 0xfff; }),
+      edit(packed, [](TriangleBlock& b) { b.first.corners[7] &= 0xfff; }),
+      edit(packed, [](TriangleBlock& b) { b.second.lists.corners[3] &= 0xfff; }),
+      edit(packed, [](TriangleBlock& b) { b.second.lists.item[0] = 1u << 31; }),
+      edit(packed, [](TriangleBlock& b) { b.second.lists.item[0] = kNoId; }),
+      edit(plain, [](TriangleBlock& b) { b.first.corners[0] |= TriangleBlock::kPacked; }),
+      edit(plain,
+           [](TriangleBlock& b) {
+             for (std::uint16_t& corners : b.first.corners) corners |= TriangleBlock::kPacked;
+           }),
+      // The second leaf of a plain block.
+      [=](Accel& a, ItemOrder&) {
+        a.nodes = copy_nodes(a);
+        for (std::size_t n = 0; n < a.stats.nodes; ++n)
+          for (NodeRef& ref : a.nodes[n].child)
+            if (ref.is_triangles() && ref.triangle_leaf() == TriangleBlock::kLeaves * plain)
+              ref = NodeRef::triangles(ref.triangle_leaf() + 1, ref.triangle_count());
+      }};
+  for (std::size_t i = 0; i < std::size(changes); ++i) {
+    store.counts = {}, told_.clear();
+    store.change = changes[i];
+    const auto accel = build_accel(geometries, compact);
+    EXPECT_EQ(store.counts.refusals, 1) << i;
     expect_same_tree(*accel, *good);
   }
 }

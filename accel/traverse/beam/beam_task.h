@@ -53,10 +53,10 @@ OKTETT_INLINE F greatest(const F& a, const F& b, const F& c, const F& mx, const 
 
 /// Projects the triangles of a block, and rejects those that no ray in `w` hits.
 template <class A>
-OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int count, const BeamRays<A>& beam,
+OKTETT_INLINE BlockCandidates project_block(const TriangleLeaf& leaf, int count, const BeamRays<A>& beam,
                                             const BeamWindow& w, ProjectedTriangles<A>& out) {
   using B = Simd<float, TriangleBlock::kSize, A>;
-  const TriangleLanes<B> tri = load_triangles<B>(block, 0, beam.axis[2]);
+  const TriangleLanes<B> tri = load_triangles<B>(leaf, 0, beam.axis[2]);
   const auto from = [&](const Vec3<B>& p, const Vec3<B>& q) {
     return Vec3<B>{q.x - p.x, q.y - p.y, beam.mirrored ? p.z - q.z : q.z - p.z};
   };
@@ -346,7 +346,7 @@ OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray
       task.beam.hit_lo[ray[i]] = std::numeric_limits<float>::infinity();
     } else {
       const std::uint32_t item =
-          task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
+          task.accel.triangles(ids[i] / TriangleBlock::kSize).item(ids[i] % TriangleBlock::kSize);
       accept_beam(task.out.hits, task.beam, __builtin_fabsf(column[3 + task.beam.axis[2]][i]), ray[i],
                   {t, u, v, item, kNoId});
     }
@@ -425,7 +425,7 @@ OKTETT_INLINE void finish_group(BeamTask<Query::closest, A>& task, std::size_t b
   select(miss, F(std::numeric_limits<float>::infinity()), h.t).store(hits.t + base);
   select(miss, zero, h.u).store(hits.u + base), select(miss, zero, h.v).store(hits.v + base);
   alignas(64) std::uint32_t items[kBeamGroup];
-  for (int i = 0; i < kBeamGroup; ++i) items[i] = blocks[ids[i] / kSize].item[ids[i] % kSize];
+  for (int i = 0; i < kBeamGroup; ++i) items[i] = TriangleLeaf(blocks, ids[i] / kSize).item(ids[i] % kSize);
   select(none, nothing, I::load(as_int(items))).store(as_int(hits.item + base));
   std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
 }

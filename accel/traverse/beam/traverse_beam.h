@@ -94,7 +94,7 @@ OKTETT_INLINE unsigned entry_rays(const BeamEntry& e, const BeamRays<A>& beam, i
 template <Query Q, class A>
 OKTETT_NOINLINE void meet_edge_on(BeamTask<Q, A>& task, std::uint32_t id, unsigned groups) {
   using F = Simd<float, kBeamGroup, A>;
-  const auto tri = filter_triangle(broadcast_triangle<F>(task.accel.blocks[id / TriangleBlock::kSize],
+  const auto tri = filter_triangle(broadcast_triangle<F>(task.accel.triangles(id / TriangleBlock::kSize),
                                                          static_cast<int>(id % TriangleBlock::kSize)));
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
@@ -111,9 +111,9 @@ OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, 
                             unsigned& dirty) {
   BeamRays<A>& beam = task.beam;
   ProjectedTriangles<A> projected;
-  const BlockCandidates found =
-      project_block(task.accel.blocks[ref.block()], ref.triangle_count(), beam, window, projected);
-  const std::uint32_t base = ref.block() * TriangleBlock::kSize;
+  const TriangleLeaf leaf = task.accel.triangles(ref.triangle_leaf());
+  const BlockCandidates found = project_block(leaf, ref.triangle_count(), beam, window, projected);
+  const std::uint32_t base = ref.triangle_leaf() * TriangleBlock::kSize;
   // All pairs first: one loop, whose end is mispredicted once, instead of eight.
   std::int32_t pairs[(TriangleBlock::kSize + 1) * kBeamGroups];
   int size = 0;
@@ -121,7 +121,7 @@ OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, 
   for (unsigned rest = found.projected; rest != 0; rest &= rest - 1) {
     const int k = __builtin_ctz(rest);
     unsigned met = lone ? groups : groups_meeting(projected, k, beam, groups);
-    if (task.accel.pieces) met = task.met.add(task.accel.blocks[ref.block()].item[k], met);
+    if (task.accel.pieces) met = task.met.add(leaf.item(k), met);
     size += store_set_bits<A>(met, k * kBeamGroups, pairs + size);
   }
   for (int i = 0; i < size; ++i) {

@@ -148,7 +148,7 @@ class AllHitsTraversal {
     const auto ray = [&](int j) -> const InflightHead& { return group_[leaves_.ray[at + j]]; };
     const auto ref = [&](int j) { return NodeRef::from_bits(leaves_.what[at + j]); };
     const auto guess =
-        guess_blocks<N, A>(ray, [&](int j) -> const TriangleBlock& { return accel_.blocks[ref(j).block()]; });
+        guess_blocks<N, A>(ray, [&](int j) { return accel_.triangles(ref(j).triangle_leaf()); });
     const unsigned maybe = bits(maybe_hit(guess, spread_blocks<N, A>([&](int j) { return ray(j).tmax; })));
     for (int j = 0; j < N; ++j) {
       const unsigned present = (2u << (ref(j).triangle_count() - 1)) - 1;
@@ -156,7 +156,7 @@ class AllHitsTraversal {
       I(static_cast<std::int32_t>(leaves_.ray[at + j]))
           .store(reinterpret_cast<std::int32_t*>(triangles_.ray + triangles_.size));
       triangles_.size += store_set_bits<A>(
-          maybe >> (j * kBlock) & present, static_cast<std::int32_t>(ref(j).block() * kBlock),
+          maybe >> (j * kBlock) & present, static_cast<std::int32_t>(ref(j).triangle_leaf() * kBlock),
           reinterpret_cast<std::int32_t*>(triangles_.what + triangles_.size));
     }
     if (triangles_.size > kTriangleRoom - 2 * kBlock) decide_round(kChunk - 1);
@@ -181,7 +181,7 @@ class AllHitsTraversal {
       unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), triangle, h, &front);
       met &= (2u << (count - 1)) - 1;
       each_hit(met, h, [&](int i, float t, float u, float v) {
-        const std::uint32_t item = accel_.blocks[triangle[i] / kBlock].item[triangle[i] % kBlock];
+        const std::uint32_t item = accel_.triangles(triangle[i] / kBlock).item(triangle[i] % kBlock);
         const bool mirrored = accel_.has_mirrors && is_mirrored(accel_, item);
         const float turn = (front >> i & 1) != (mirrored ? 1u : 0u) ? -1.0f : 1.0f;
         add({{{t, u, v, item, kNoId}, turn}, static_cast<std::uint32_t>(first_) + ray[i]});

@@ -63,9 +63,10 @@ struct TreeBytes {
   /// Prefetches a node or a block. For any other leaf the address means nothing, so it is a number here: a
   /// pointer may not leave its array.
   OKTETT_INLINE void prefetch(NodeRef ref) const {
-    static_assert(sizeof(TriangleBlock) == sizeof(BvhNode));
-    const std::uintptr_t at =
-        reinterpret_cast<std::uintptr_t>(of[ref.bits() >> 31]) + ref.block() * sizeof(BvhNode);
+    static_assert(sizeof(TriangleBlock) == sizeof(BvhNode) && TriangleBlock::kLeaves == 2);
+    const std::uint32_t is_leaf = ref.bits() >> 31;
+    const std::uintptr_t at = reinterpret_cast<std::uintptr_t>(of[is_leaf]) +
+                              std::size_t{ref.triangle_leaf() >> is_leaf} * sizeof(BvhNode);
     for (std::size_t line = 0; line < sizeof(BvhNode); line += 64)
       __builtin_prefetch(reinterpret_cast<const void*>(at + line));
   }
@@ -212,7 +213,7 @@ struct alignas(64) RayChunk {
 // ---- The candidate hit of a ray whose triangles are classified in float: the nearest triangle that is
 // surely hit, which is decided when the ray is finished.
 
-/// A candidate is block * TriangleBlock::kSize + lane, or one of these: nothing has been hit so far, or the
+/// A candidate is leaf * TriangleBlock::kSize + lane, or one of these: nothing has been hit so far, or the
 /// nearest hit so far is decided and stands in the ray's RayState.
 inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
 inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
@@ -223,26 +224,26 @@ template <class A>
 OKTETT_INLINE std::uint32_t candidate_item(const TriangleBlock* blocks, std::uint32_t candidate,
                                            const RayState<1, A>& r, std::uint32_t path) {
   constexpr std::uint32_t kBlock = TriangleBlock::kSize;
-  if (candidate < kDecidedHit) return blocks[candidate / kBlock].item[candidate % kBlock];
+  if (candidate < kDecidedHit) return TriangleLeaf(blocks, candidate / kBlock).item(candidate % kBlock);
   return candidate == kDecidedHit && r.path[0] == path ? r.item[0] : kNoId;
 }
 
-/// The lane of `block`, as a bit, that holds the triangle `item`, if there is one. A triangle that was split
+/// The lane of `leaf`, as a bit, that holds the triangle `item`, if there is one. A triangle that was split
 /// stands in several leaves, and need not be tested again if it is the nearest hit so far.
 template <class A>
-OKTETT_INLINE unsigned repeated_lane(std::uint32_t item, const TriangleBlock& block) {
+OKTETT_INLINE unsigned repeated_lane(std::uint32_t item, const TriangleLeaf& leaf) {
   constexpr int kBlock = TriangleBlock::kSize;
   using I = Simd<std::int32_t, kBlock, A>;
-  const auto* items = reinterpret_cast<const std::int32_t*>(block.item);
+  const auto* items = reinterpret_cast<const std::int32_t*>(leaf.items());
   return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
 }
 
-/// The triangles of `block` that are surely behind the origin `o` of a ray, as bits.
+/// The triangles of `leaf` that are surely behind the origin `o` of a ray, as bits.
 template <class A>
-OKTETT_NOINLINE unsigned behind_origin(const float* o, const float* d, const TriangleBlock& block) {
+OKTETT_NOINLINE unsigned behind_origin(const float* o, const float* d, const TriangleLeaf& leaf) {
   using F = Simd<float, TriangleBlock::kSize, A>;
   return bits(surely_behind(Vec3<F>{F(o[0]), F(o[1]), F(o[2])}, Vec3<F>{F(d[0]), F(d[1]), F(d[2])},
-                            load_triangles<F>(block)));
+                            load_triangles<F>(leaf)));
 }
 
 /// A triangle that is surely hit at lo <= t <= hi.
@@ -270,19 +271,19 @@ enum class BlockVerdict {
   open,     ///< the exact test decides
 };
 
-/// The verdict on the triangles of `block` that the filter did not reject: the bits of `maybe`, not empty.
-/// The block is in lanes `first`, `first` + 1, ... of `guess` and of interval(), its HitInterval. `o` and `d`
+/// The verdict on the triangles of `leaf` that the filter did not reject: the bits of `maybe`, not empty.
+/// The leaf is in lanes `first`, `first` + 1, ... of `guess` and of interval(), its HitInterval. `o` and `d`
 /// are the ray's, `hit_lo` is the least distance of its nearest hit so far. repeated() returns the lanes that
 /// need not be tested again. With `forward`, what is behind the origin is no hit. Sets `nearest` if that is
 /// the verdict.
 template <Query Q, class A, class F, class Repeated, class Interval>
 OKTETT_INLINE BlockVerdict judge_block(const TriangleGuess<F>& guess, unsigned maybe, int first,
-                                       const TriangleBlock& block, const float* o, const float* d,
-                                       bool forward, float hit_lo, Repeated&& repeated, Interval&& interval,
+                                       const TriangleLeaf& leaf, const float* o, const float* d, bool forward,
+                                       float hit_lo, Repeated&& repeated, Interval&& interval,
                                        SureHit& nearest) {
   maybe &= ~repeated();
   const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
-  if (OKTETT_UNLIKELY(near != 0 && forward)) maybe &= ~(near & behind_origin<A>(o, d, block));
+  if (OKTETT_UNLIKELY(near != 0 && forward)) maybe &= ~(near & behind_origin<A>(o, d, leaf));
   if (maybe == 0) return BlockVerdict::missed;
   const HitInterval<F>& h = interval();
   const unsigned sure = bits(h.sure) >> first & maybe;

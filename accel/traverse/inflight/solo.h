@@ -289,14 +289,15 @@ class SoloTraversal {
 
   /// Tests a block of triangles; returns true if there is a new nearest hit.
   OKTETT_INLINE bool leaf(NodeRef ref) {
-    const auto guess = guess_triangle(
-        Vec3<F>{F(r_.o[0]), F(r_.o[1]), F(r_.o[2])}, Vec3<F>{F(r_.d[0]), F(r_.d[1]), F(r_.d[2])},
-        F(weight_scale_), F(det_scale_), filter_triangle(load_triangles<F>(accel_.blocks[ref.block()])));
+    const auto guess =
+        guess_triangle(Vec3<F>{F(r_.o[0]), F(r_.o[1]), F(r_.o[2])},
+                       Vec3<F>{F(r_.d[0]), F(r_.d[1]), F(r_.d[2])}, F(weight_scale_), F(det_scale_),
+                       filter_triangle(load_triangles<F>(accel_.triangles(ref.triangle_leaf()))));
     const unsigned present = (2u << (ref.triangle_count() - 1)) - 1;
     const unsigned maybe = bits(maybe_hit(guess, F(tmax_))) & present;
     if (OKTETT_LIKELY(maybe == 0)) return false;
     if constexpr (kJudged)
-      return offer_block(ref.block(), maybe, bits(guess.t <= guess.t_error) & maybe);
+      return offer_block(ref.triangle_leaf(), maybe, bits(guess.t <= guess.t_error) & maybe);
     else
       return take(ref, guess, maybe);
   }
@@ -305,12 +306,12 @@ class SoloTraversal {
 
   /// Decides triangles of a block, the bits of `maybe`, and offers those that are hit. Of `near` the origin
   /// may lie behind.
-  OKTETT_NOINLINE bool offer_block(std::uint32_t block, unsigned maybe, unsigned near) {
-    if (near != 0) maybe &= ~(near & behind_origin<A>(r_.o, r_.d, accel_.blocks[block]));
+  OKTETT_NOINLINE bool offer_block(std::uint32_t leaf, unsigned maybe, unsigned near) {
+    if (near != 0) maybe &= ~(near & behind_origin<A>(r_.o, r_.d, accel_.triangles(leaf)));
     HitWithNormal hits[kBlock];
     int count = 0;
     for (; maybe != 0; maybe &= maybe - 1) {
-      const HitWithNormal hit = decide(block * kBlock + static_cast<std::uint32_t>(__builtin_ctz(maybe)));
+      const HitWithNormal hit = decide(leaf * kBlock + static_cast<std::uint32_t>(__builtin_ctz(maybe)));
       if (hit.valid() && hit.t <= tmax_) hits[count++] = hit;
     }
     return count > 0 && judge_.offer(hits, count) && accept();
@@ -345,27 +346,27 @@ class SoloTraversal {
 
   /// The same for the triangles that the filter did not reject, the bits of `maybe`.
   OKTETT_INLINE bool take(NodeRef ref, const TriangleGuess<F>& guess, unsigned maybe) {
-    const TriangleBlock& block = accel_.blocks[ref.block()];
+    const TriangleLeaf leaf = accel_.triangles(ref.triangle_leaf());
     const auto repeated = [&] {
       if (!accel_.pieces) return 0u;
-      return repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId), block);
+      return repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId), leaf);
     };
     const auto interval = [&] { return hit_interval(guess, F(ray_.tmin), F(tmax_)); };
     SureHit hit;
-    switch (judge_block<Q, A>(guess, maybe, 0, block, r_.o, r_.d, true, hit_lo_, repeated, interval, hit)) {
+    switch (judge_block<Q, A>(guess, maybe, 0, leaf, r_.o, r_.d, true, hit_lo_, repeated, interval, hit)) {
       case BlockVerdict::missed:
         return false;
       case BlockVerdict::hit:
         candidate_ = kDecidedHit;
         return true;
       case BlockVerdict::nearest:
-        candidate_ = ref.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
+        candidate_ = ref.triangle_leaf() * kBlock + static_cast<std::uint32_t>(hit.lane);
         hit_lo_ = hit.lo, tmax_ = hit.hi;
         return true;
       case BlockVerdict::open:
         break;
     }
-    leaf_triangles_single(block, ref.triangle_count(), exact_state());
+    leaf_triangles_single(leaf, ref.triangle_count(), exact_state());
     return adopt();
   }
 
@@ -383,7 +384,7 @@ class SoloTraversal {
   /// Decides a candidate.
   OKTETT_INLINE HitWithNormal decide(std::uint32_t candidate) const {
     using D = Simd<double, V::kWidth, A>;
-    const TriangleBlock& block = accel_.blocks[candidate / kBlock];
+    const TriangleLeaf leaf = accel_.triangles(candidate / kBlock);
     const std::uint32_t lane = candidate % kBlock;
     const auto origin = [&](int axis) { return D(static_cast<double>(r_.o[axis])); };
     HitLanes<V> h;
@@ -392,16 +393,16 @@ class SoloTraversal {
                       D(r_.inv_dz),
                       D(r_.shear_x),
                       D(r_.shear_y)},
-        broadcast_triangle<V>(block, static_cast<int>(lane), r_.z_axis), V(ray_.tmin), V(ray_.tmax), h));
+        broadcast_triangle<V>(leaf, static_cast<int>(lane), r_.z_axis), V(ray_.tmin), V(ray_.tmax), h));
     if (OKTETT_UNLIKELY(met == 0)) return {};
     float t[V::kWidth], u[V::kWidth], v[V::kWidth];
     h.t.store(t), h.u.store(u), h.v.store(v);
     const TriangleLanes<Simd<float, 1, A>> corners =
-        broadcast_triangle<Simd<float, 1, A>>(block, static_cast<int>(lane));
+        broadcast_triangle<Simd<float, 1, A>>(leaf, static_cast<int>(lane));
     const auto at = [](const Vec3<Simd<float, 1, A>>& p) {
       return Vec3f{p.x.part[0].v, p.y.part[0].v, p.z.part[0].v};
     };
-    return {{t[0], u[0], v[0], block.item[lane], kNoId},
+    return {{t[0], u[0], v[0], leaf.item(lane), kNoId},
             triangle_normal(at(corners.a), at(corners.b), at(corners.c)),
             true};
   }

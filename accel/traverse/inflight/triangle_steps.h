@@ -134,7 +134,7 @@ class EnteringRays {
 template <int N, class A, bool kInstances>
 class PendingHits {
  public:
-  /// Adds triangle `triangle` = block * TriangleBlock::kSize + lane for ray `ray`, in an instance of that
+  /// Adds triangle `triangle` = leaf * TriangleBlock::kSize + lane for ray `ray`, in an instance of that
   /// number or kNoInstance. Returns true if there is no room for another.
   OKTETT_INLINE bool add(std::uint32_t ray, std::uint32_t triangle, std::uint32_t instance) {
     ray_[size_] = ray, triangle_[size_] = triangle;
@@ -150,15 +150,16 @@ class PendingHits {
   OKTETT_NOINLINE void decide(const Accel& accel, const RaySpan& rays, Store&& store) {
     if (size_ == 0) return;
     alignas(64) float column[8][N];
-    const TriangleBlock* block[N];
+    TriangleLeaf leaf[N];
     std::uint32_t path[N];
     for (int i = 0; i < N; ++i) {
       if (i >= size_) add_again(i);
       Ray ray = rays[ray_[i]];
       if constexpr (kInstances) {
-        block[i] = accel.blocks.data(), path[i] = kNoId;
-        if (instance_[i] != kNoInstance) ray = go_inside(accel, instance_[i], ray, block[i], path[i]);
-        block[i] += triangle_[i] / TriangleBlock::kSize;
+        const TriangleBlock* blocks = accel.blocks.data();
+        path[i] = kNoId;
+        if (instance_[i] != kNoInstance) ray = go_inside(accel, instance_[i], ray, blocks, path[i]);
+        leaf[i] = {blocks, triangle_[i] / TriangleBlock::kSize};
       }
       for (int k = 0; k < 3; ++k) column[k][i] = ray.origin[k], column[3 + k][i] = ray.direction[k];
       column[6][i] = ray.tmin, column[7][i] = ray.tmax;
@@ -170,14 +171,14 @@ class PendingHits {
     HitLanes<F> h;
     unsigned met;
     if constexpr (kInstances)
-      met = decide_pairs<N, A>(lanes, gather_triangles<N, A>(block, triangle_), h);
+      met = decide_pairs<N, A>(lanes, gather_triangles<N, A>(leaf, triangle_), h);
     else
       met = decide_pairs<N, A>(lanes, accel.blocks.data(), triangle_, h);
     alignas(64) float t[N], u[N], v[N];
     h.t.store(t), h.u.store(u), h.v.store(v);
     for (int i = 0; i < size_; ++i) {
-      const TriangleBlock& b = kInstances ? *block[i] : accel.blocks[triangle_[i] / TriangleBlock::kSize];
-      const std::uint32_t item = b.item[triangle_[i] % TriangleBlock::kSize];
+      if constexpr (!kInstances) leaf[i] = accel.triangles(triangle_[i] / TriangleBlock::kSize);
+      const std::uint32_t item = leaf[i].item(triangle_[i] % TriangleBlock::kSize);
       const std::uint32_t instance = kInstances ? path[i] : kNoId;
       store(ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, instance} : Hit{});
     }
@@ -257,6 +258,11 @@ class TriangleSteps {
     return kInstances ? ray.in.bytes.blocks() : accel_.blocks.data();
   }
 
+  /// The leaf of triangles that the ray is at.
+  OKTETT_INLINE TriangleLeaf leaf_of(const InflightRay& ray) const {
+    return {blocks(ray), ray.current.triangle_leaf()};
+  }
+
   void node_round() {
     Tails t = queues_.tails();
     InflightRay** at = queues_.nodes.head;
@@ -282,8 +288,7 @@ class TriangleSteps {
   OKTETT_INLINE void leaf_step(InflightRay* const* rays, Tails& tail) {
     using F = BlockLanes<N, A>;
     const auto ray = [&](int j) -> const InflightRay& { return *rays[j]; };
-    const auto guess = guess_blocks<N, A>(
-        ray, [&](int j) -> const TriangleBlock& { return blocks(ray(j))[ray(j).current.block()]; });
+    const auto guess = guess_blocks<N, A>(ray, [&](int j) { return leaf_of(ray(j)); });
     const F tmax = spread_blocks<N, A>([&](int j) { return ray(j).tmax; });
     unsigned present = 0;
     for (int j = 0; j < N; ++j)
@@ -304,20 +309,20 @@ class TriangleSteps {
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
     if (maybe == 0) return;
-    const TriangleBlock& block = blocks(ray)[ray.current.block()];
+    const TriangleLeaf leaf = leaf_of(ray);
     const auto repeated = [&] {
-      return (kInstances ? *ray.in.accel : accel_).pieces ? repeated_lane<A>(repeated_item(ray), block) : 0;
+      return (kInstances ? *ray.in.accel : accel_).pieces ? repeated_lane<A>(repeated_item(ray), leaf) : 0;
     };
     SureHit hit;
     switch (judge_block<Q, A>(
-        guess, maybe, first, block, ray.o, ray.d, ray.tmin >= 0, ray.hit_lo, repeated,
+        guess, maybe, first, leaf, ray.o, ray.d, ray.tmin >= 0, ray.hit_lo, repeated,
         [&]() -> const HitInterval<F>& { return h; }, hit)) {
       case BlockVerdict::missed:
         return;
       case BlockVerdict::hit:
         return found(ray);
       case BlockVerdict::nearest:
-        ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
+        ray.candidate = ray.current.triangle_leaf() * kBlock + static_cast<std::uint32_t>(hit.lane);
         if constexpr (kInstances) ray.in.candidate_instance = ray.in.instance;
         ray.hit_lo = hit.lo;
         return shorten<A>(ray, hit.hi);
@@ -358,7 +363,7 @@ class TriangleSteps {
     }
     if (ray.candidate < kDecidedHit)
       exact_in(ray.in.candidate_instance, r, [&](const Accel& tree, RayState<1, A>& state) {
-        leaf_triangles_single(tree.blocks[ray.candidate / kBlock],
+        leaf_triangles_single(tree.triangles(ray.candidate / kBlock),
                               static_cast<int>(ray.candidate % kBlock) + 1, state);
       });
     return r;
@@ -403,7 +408,7 @@ class TriangleSteps {
   OKTETT_NOINLINE void decide_leaf(InflightRay& ray) {
     const NodeRef leaf = ray.current;
     exact_in(ray.in.instance, exact_state(ray), [&](const Accel& tree, RayState<1, A>& state) {
-      leaf_triangles_single(tree.blocks[leaf.block()], leaf.triangle_count(), state);
+      leaf_triangles_single(tree.triangles(leaf.triangle_leaf()), leaf.triangle_count(), state);
     });
     adopt(ray);
   }
