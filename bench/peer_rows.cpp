@@ -27,8 +27,10 @@ struct BuildVariant {
 };
 
 /// All that the comparison measures; the first is Oktett's default.
-const BuildVariant kBuildVariants[] = {
-    {"balanced", {BuildQuality::balanced}}, {"fast", {BuildQuality::fast}}, {"best", {BuildQuality::best}}};
+const BuildVariant kBuildVariants[] = {{"balanced", {BuildQuality::balanced}},
+                                       {"fast", {BuildQuality::fast}},
+                                       {"best", {BuildQuality::best}},
+                                       {"compact", {BuildQuality::compact}}};
 
 /// The variant called `name`, the first for an empty name. Throws Error if there is none.
 const BuildVariant& find_variant(const std::string& name) {

@@ -1,11 +1,14 @@
 /// \file Rays through the tree: primary, shadow and diffuse, by instruction set and by traversal.
-/// One thread. The mesh is OKTETT_BENCH_MESH or a generated one.
+/// One thread. The mesh is OKTETT_BENCH_MESH or a generated one; OKTETT_BENCH_BVH=compact makes its tree
+/// compact.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <cstdlib>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "accel/query.h"
@@ -23,7 +26,10 @@ struct Scene {
   RayBatch rays[3];
 
   Scene() {
-    accel = build_accel({{MeshGeometry{&bench_mesh()}, {}}});
+    const char* const bvh = std::getenv("OKTETT_BENCH_BVH");
+    const bool compact = bvh != nullptr && std::string_view(bvh) == "compact";
+    accel = build_accel({{MeshGeometry{&bench_mesh()}, {}}},
+                        {compact ? BuildQuality::compact : BuildQuality::balanced});
     const View view{512, false};
     const Box box = bounds(*accel);
     rays[0] = primary_rays(box, view);
