@@ -50,25 +50,18 @@ class References {
   /// How many there are, those that are not finite included.
   std::size_t size() const { return size_; }
 
-  /// Calls f(span, refs, count, number) for spans of the references, in parallel: refs[i] is reference
-  /// number + refs[i].item for triangles, number + i for others; see number_of(). Spans for which
-  /// wants(begin, end) is false, the numbers of their references, are left out.
-  template <class Wants, class F>
-  void each(bool parallel, Wants&& wants, F&& f) const {
-    Chunks(spans_.size(), 1).each(parallel, [&](std::size_t p, std::size_t, std::size_t) {
-      const Span& span = spans_[p];
-      if (!wants(span.first, span.first + span.count)) return;
-      if (span.geometry == kNoId) {
-        const PrimRef* const refs = &others_[span.begin];
-        return f(p, refs, span.count,
-                 [&](const PrimRef& ref) { return span.first + static_cast<std::size_t>(&ref - refs); });
-      }
-      PrimRef refs[kSpan];
-      Box bounds;
-      const std::size_t count =
-          source_.references(span.geometry, span.begin, span.begin + span.count, refs, bounds);
-      f(p, static_cast<const PrimRef*>(refs), count,
-        [&](const PrimRef& ref) { return span.first + (ref.item - span.first_item); });
+  /// Calls f(span, refs, count, number_of) for each span of references, in parallel; number_of(refs[i]) is
+  /// the number of a reference, which counts those that are left out as well.
+  template <class F>
+  void each(bool parallel, F&& f) const {
+    Chunks(spans_.size(), 1).each(parallel, [&](std::size_t s, std::size_t, std::size_t) { visit(s, f); });
+  }
+
+  /// The same for the spans that hold a reference of a part; `numbers` are the parts of all.
+  template <class F>
+  void each_of(PartNumber part, const Column<PartNumber>& numbers, bool parallel, F&& f) const {
+    Chunks(spans_.size(), 1).each(parallel, [&](std::size_t s, std::size_t, std::size_t) {
+      if (std::memchr(&numbers[spans_[s].first], part, spans_[s].count) != nullptr) visit(s, f);
     });
   }
 
@@ -87,6 +80,22 @@ class References {
     std::size_t begin, count;  ///< of the triangles of the mesh, or of the others
     std::size_t first;         ///< number of its first reference
   };
+
+  template <class F>
+  void visit(std::size_t s, F& f) const {
+    const Span& span = spans_[s];
+    if (span.geometry == kNoId) {
+      const PrimRef* const refs = &others_[span.begin];
+      return f(s, refs, span.count,
+               [&](const PrimRef& ref) { return span.first + static_cast<std::size_t>(&ref - refs); });
+    }
+    PrimRef refs[kSpan];
+    Box bounds;
+    const std::size_t count =
+        source_.references(span.geometry, span.begin, span.begin + span.count, refs, bounds);
+    f(s, static_cast<const PrimRef*>(refs), count,
+      [&](const PrimRef& ref) { return span.first + (ref.item - span.first_item); });
+  }
 
   void add_spans(std::uint32_t geometry, std::uint32_t first_item, std::size_t count) {
     for (std::size_t begin = 0; begin < count; begin += kSpan) {
@@ -133,16 +142,6 @@ constexpr int kCells = 64;  ///< along each axis
 constexpr std::size_t kAllCells = std::size_t{kCells} * kCells * kCells;
 
 class Divider {
-  static auto any() {
-    return [](std::size_t, std::size_t) { return true; };
-  }
-  /// Whether there is a reference of the part among these.
-  auto of(PartNumber part) const {
-    return [this, part](std::size_t begin, std::size_t end) {
-      return std::memchr(&numbers_[begin], part, end - begin) != nullptr;
-    };
-  }
-
  public:
   Divider(const References& references, std::size_t most, bool parallel)
       : references_(references),
@@ -153,11 +152,10 @@ class Divider {
   /// Returns the sizes of the parts.
   std::vector<std::size_t> run(Box& bounds) {
     std::atomic<std::size_t> all = 0;
-    references_.each(parallel_, any(),
-                     [&](std::size_t, const PrimRef* refs, std::size_t count, auto&& number_of) {
-                       for (std::size_t i = 0; i < count; ++i) numbers_[number_of(refs[i])] = 0;
-                       all += count;
-                     });
+    references_.each(parallel_, [&](std::size_t, const PrimRef* refs, std::size_t count, auto&& number_of) {
+      for (std::size_t i = 0; i < count; ++i) numbers_[number_of(refs[i])] = 0;
+      all += count;
+    });
     sizes_ = {all};
     for (std::size_t k = 0; k < sizes_.size(); ++k)
       // Where many triangles stand in one cell, the cell is divided by a grid of its own.
@@ -196,7 +194,8 @@ class Divider {
     const auto cell_of = [&](const PrimRef& ref, std::uint8_t(&at)[3]) {
       for (int k = 0; k < 3; ++k) {
         const float c = (ref.hi[k] - ref.negative_lo[k] - all.centers.lo[k]) * scale[k];
-        at[k] = static_cast<std::uint8_t>(std::clamp(c, 0.0f, static_cast<float>(kCells - 1)));
+        // NaN, from infinite centres, is cell 0.
+        at[k] = c > 0 ? static_cast<std::uint8_t>(std::min(c, static_cast<float>(kCells - 1))) : 0;
       }
       return (std::size_t{at[0]} * kCells + at[1]) * kCells + at[2];
     };
@@ -207,7 +206,6 @@ class Divider {
       cell.box.grow(ref), ++cell.count;
     });
     std::vector<Cell> cells;
-    std::vector<std::size_t> places;
     for (std::size_t c = 0; c < kAllCells; ++c) {
       Cell cell;
       for (const std::vector<Cell>& grid : grids) cell.box.grow(grid[c].box), cell.count += grid[c].count;
@@ -234,14 +232,14 @@ class Divider {
   /// Calls f(own, ref, number) for each reference of a part; `own` is what `all` holds for the thread.
   template <class All, class F>
   void each_of(PartNumber part, All& all, F&& f) {
-    references_.each(parallel_, of(part),
-                     [&](std::size_t, const PrimRef* refs, std::size_t count, auto&& number_of) {
-                       auto& own = all.local();
-                       for (std::size_t i = 0; i < count; ++i) {
-                         const std::size_t number = number_of(refs[i]);
-                         if (numbers_[number] == part) f(own, refs[i], number);
-                       }
-                     });
+    references_.each_of(part, numbers_, parallel_,
+                        [&](std::size_t, const PrimRef* refs, std::size_t count, auto&& number_of) {
+                          auto& own = all.local();
+                          for (std::size_t i = 0; i < count; ++i) {
+                            const std::size_t number = number_of(refs[i]);
+                            if (numbers_[number] == part) f(own, refs[i], number);
+                          }
+                        });
   }
 
   /// Splits cells where it costs least, until they are few enough for a part. The first part that is made
@@ -321,16 +319,12 @@ void gather_part(const References& references, const Column<PartNumber>& numbers
   for (std::size_t p = 0; p < references.spans(); ++p) first[p + 1] += first[p];
   arrays.count = first.back();
   arrays.populate(arrays.refs, arrays.count, parallel);
-  references.each(
-      parallel,
-      [&](std::size_t begin, std::size_t end) {
-        return std::memchr(&numbers[begin], part, end - begin) != nullptr;
-      },
-      [&](std::size_t p, const PrimRef* refs, std::size_t count, auto&& number_of) {
-        PrimRef* out = arrays.refs + first[p];
-        for (std::size_t i = 0; i < count; ++i)
-          if (numbers[number_of(refs[i])] == part) *out++ = refs[i];
-      });
+  references.each_of(part, numbers, parallel,
+                     [&](std::size_t p, const PrimRef* refs, std::size_t count, auto&& number_of) {
+                       PrimRef* out = arrays.refs + first[p];
+                       for (std::size_t i = 0; i < count; ++i)
+                         if (numbers[number_of(refs[i])] == part) *out++ = refs[i];
+                     });
 }
 
 /// What a tree takes in the arrays of another.
