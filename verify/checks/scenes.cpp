@@ -207,10 +207,17 @@ class SceneChecker {
   }
 
   void compare_qualities() {
-    for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best}) {
-      const World other = build(scene_, quality);
+    constexpr std::size_t whole = BuildOptions{}.together;
+    for (const auto& [quality, together] : {std::pair(BuildQuality::fast, whole),
+                                            {BuildQuality::best, whole},
+                                            {BuildQuality::compact, whole},
+                                            {BuildQuality::compact, 100}}) {
+      BuildOptions options{quality, false};
+      options.together = together;
+      const World other = build_world(scene_, options);
       compare_mode(*other.accel, rays_, closest_, isa_, TraceMode::automatic, [&](std::size_t i, bool, bool) {
-        fail(tally_.differing, i, fmt::format("build quality {} differs", static_cast<int>(quality)));
+        fail(tally_.differing, i,
+             fmt::format("build quality {}, {} at once, differs", static_cast<int>(quality), together));
       });
     }
   }

@@ -424,8 +424,9 @@ class RandomScene {
       if (judges) draw_judges(g);
       all.push_back(std::move(g));
     }
-    constexpr BuildQuality qualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best};
-    return build_trace_scene(std::move(all), {.quality = qualities[pick(0, 2)]});
+    constexpr BuildQuality qualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best,
+                                          BuildQuality::compact};
+    return build_trace_scene(std::move(all), {.quality = qualities[pick(0, 3)]});
   }
 
   // ---- What rays meet.
