@@ -218,7 +218,8 @@ class SceneChecker {
       const World other = build_world(scene_, options);
       compare_mode(*other.accel, rays_, closest_, isa_, TraceMode::automatic, [&](std::size_t i, bool, bool) {
         fail(tally_.differing, i,
-             fmt::format("build quality {}, {} at once, differs", static_cast<int>(quality), together));
+             fmt::format("build quality {}, {} at once, differs", static_cast<int>(options.quality),
+                         options.together));
       });
     }
   }
