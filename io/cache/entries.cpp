@@ -178,7 +178,7 @@ void read_mesh_columns(const CacheFile& file, MeshEntry& entry) {
 namespace {
 
 /// The number changes with the tree that is built, and with the layout of nodes and blocks.
-constexpr std::string_view kTreeKind = "tree 3 " OKTETT_VERSION;
+constexpr std::string_view kTreeKind = "tree 4 " OKTETT_VERSION;
 
 enum Section : std::size_t { kNodes, kBlocks, kLeaves, kItems };
 
