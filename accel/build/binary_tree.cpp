@@ -129,8 +129,8 @@ constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
-/// So many references of a range, and at least one of kMostSkipped, are binned to find a plane: more find
-/// none that is better.
+/// About so many references of a range are binned to find a plane, but no fewer than one in kMostSkipped.
+/// More find no better plane.
 constexpr std::size_t kSampled = 1u << 13;
 constexpr std::size_t kMostSkipped = 8;
 
@@ -189,8 +189,7 @@ class Builder {
     if (n > effort_.sweep) arrays_.populate(arrays_.more_refs, n, parallel_);
     nodes_.take(1);
     // The arrays may have been made for more.
-    const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
-    Range all{0, n, arrays_.refs, arrays_.more_refs, {}, 0, std::min(room, arrays_.room)};
+    Range all{0, n, arrays_.refs, arrays_.more_refs, {}, 0, std::min(room_for(n, effort_), arrays_.room)};
     bound(all);
     SubtreeCost cost;
     if (effort_.cells && n > effort_.sweep) {

@@ -25,7 +25,7 @@ class Layout {
 }  // namespace
 
 BuildArrays::BuildArrays(std::size_t most, const Effort& effort)
-    : room(most + static_cast<std::size_t>(effort.spatial * static_cast<double>(most))),
+    : room(room_for(most, effort)),
       // A leaf has at least one item.
       node_room(2 * room + 2 * kMaxSweep) {
   const bool one_sweep = most <= effort.sweep;

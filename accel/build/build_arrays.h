@@ -42,6 +42,11 @@ struct CellKey {
   std::uint32_t cell, place;
 };
 
+/// Room for so many references and those that spatial splits add.
+inline std::size_t room_for(std::size_t references, const Effort& effort) {
+  return references + static_cast<std::size_t>(effort.spatial * static_cast<double>(references));
+}
+
 /// The arrays of a build, side by side in one piece of memory. Alone, most are too small for pages of 2 MB;
 /// allocating and freeing small pages would take a large part of the time of a build.
 class BuildArrays {

@@ -16,7 +16,6 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/phase.h"
 
 namespace oktett {
 namespace {
@@ -25,9 +24,9 @@ namespace {
 using PartNumber = std::uint8_t;
 constexpr PartNumber kLeftOut = 255;
 constexpr std::size_t kMostParts = 255;
-/// A part has at least so many of all references, so that there are not too many parts.
+/// A part may always have a 128th of all references, so that there are not too many parts.
 constexpr std::size_t kLeastShare = 128;
-/// No side of a division has less than this part of a part, where that is possible.
+/// A division leaves each side at least an eighth of the most that a part may have, where that is possible.
 constexpr std::size_t kLeastSide = 8;
 
 /// Levels of nodes that stand over the parts at most.
@@ -125,6 +124,7 @@ struct CellBox {
       hi[k] = std::max(hi[k], o.hi[k]);
     }
   }
+  Box box() const { return {{-negative_lo[0], -negative_lo[1], -negative_lo[2]}, {hi[0], hi[1], hi[2]}}; }
   double area() const {
     const auto edge = [&](int k) { return static_cast<double>(hi[k]) + static_cast<double>(negative_lo[k]); };
     return edge(0) * (edge(1) + edge(2)) + edge(1) * edge(2);
@@ -141,6 +141,10 @@ struct Cell {
 constexpr int kCells = 64;  ///< along each axis
 constexpr std::size_t kAllCells = std::size_t{kCells} * kCells * kCells;
 
+std::size_t number_of_cell(const std::uint8_t (&at)[3]) {
+  return (std::size_t{at[0]} * kCells + at[1]) * kCells + at[2];
+}
+
 class Divider {
  public:
   Divider(const References& references, std::size_t most, bool parallel)
@@ -149,17 +153,20 @@ class Divider {
         parallel_(parallel),
         numbers_(filled_column<PartNumber>(references.size(), kLeftOut)) {}
 
-  /// Returns the sizes of the parts.
+  /// Grows `bounds` by all references. Returns the sizes of the parts.
   std::vector<std::size_t> run(Box& bounds) {
     std::atomic<std::size_t> all = 0;
+    tbb::enumerable_thread_specific<CellBox> boxes;
     references_.each(parallel_, [&](std::size_t, const PrimRef* refs, std::size_t count, auto&& number_of) {
-      for (std::size_t i = 0; i < count; ++i) numbers_[number_of(refs[i])] = 0;
+      CellBox& box = boxes.local();
+      for (std::size_t i = 0; i < count; ++i) numbers_[number_of(refs[i])] = 0, box.grow(refs[i]);
       all += count;
     });
+    for (const CellBox& box : boxes) bounds.grow(box.box());
     sizes_ = {all};
     for (std::size_t k = 0; k < sizes_.size(); ++k)
       // Where many triangles stand in one cell, the cell is divided by a grid of its own.
-      while (sizes_[k] > most_ && divide(static_cast<PartNumber>(k), k == 0 ? &bounds : nullptr)) {}
+      while (sizes_[k] > most_ && divide(static_cast<PartNumber>(k))) {}
     return sizes_;
   }
 
@@ -167,37 +174,29 @@ class Divider {
 
  private:
   /// Divides a part; false if that is not possible.
-  bool divide(PartNumber part, Box* bounds) {
-    struct Reach {
-      Centers centers;
-      CellBox box;
-    };
-    tbb::enumerable_thread_specific<Reach> reaches;
-    each_of(part, reaches, [&](Reach& reach, const PrimRef& ref, std::size_t) {
-      reach.box.grow(ref);
+  bool divide(PartNumber part) {
+    tbb::enumerable_thread_specific<Centers> all_centers;
+    each_of(part, all_centers, [&](Centers& own, const PrimRef& ref, std::size_t) {
       for (int k = 0; k < 3; ++k) {
         const float c = ref.hi[k] - ref.negative_lo[k];
-        reach.centers.lo[k] = std::min(reach.centers.lo[k], c),
-        reach.centers.hi[k] = std::max(reach.centers.hi[k], c);
+        own.lo[k] = std::min(own.lo[k], c), own.hi[k] = std::max(own.hi[k], c);
       }
     });
-    Reach all;
-    for (const Reach& e : reaches) all.centers.grow(e.centers), all.box.grow(e.box);
-    if (bounds != nullptr)
-      for (int k = 0; k < 3; ++k) bounds->lo[k] = -all.box.negative_lo[k], bounds->hi[k] = all.box.hi[k];
+    Centers centers;
+    for (const Centers& own : all_centers) centers.grow(own);
     float scale[3];
     for (int k = 0; k < 3; ++k) {
-      const float extent = all.centers.hi[k] - all.centers.lo[k];
+      const float extent = centers.hi[k] - centers.lo[k];
       scale[k] = static_cast<float>(kCells) / extent;
       if (!(extent > 0 && std::isfinite(extent) && std::isfinite(scale[k]))) scale[k] = 0;
     }
     const auto cell_of = [&](const PrimRef& ref, std::uint8_t(&at)[3]) {
       for (int k = 0; k < 3; ++k) {
-        const float c = (ref.hi[k] - ref.negative_lo[k] - all.centers.lo[k]) * scale[k];
+        const float c = (ref.hi[k] - ref.negative_lo[k] - centers.lo[k]) * scale[k];
         // NaN, from infinite centres, is cell 0.
         at[k] = c > 0 ? static_cast<std::uint8_t>(std::min(c, static_cast<float>(kCells - 1))) : 0;
       }
-      return (std::size_t{at[0]} * kCells + at[1]) * kCells + at[2];
+      return number_of_cell(at);
     };
     tbb::enumerable_thread_specific<std::vector<Cell>> grids(kAllCells);
     each_of(part, grids, [&](std::vector<Cell>& grid, const PrimRef& ref, std::size_t) {
@@ -248,7 +247,7 @@ class Divider {
     std::uint64_t all = 0;
     for (const Cell* c = begin; c != end; ++c) all += c->count;
     if (all > most_ && end - begin > 1 && sizes_.size() + open_ < kMostParts) {
-      Plane plane = least(begin, end, all, most_ / kLeastSide);
+      Plane plane = least(begin, end, all, std::max<std::size_t>(most_ / kLeastSide, 1));
       if (plane.axis < 0) plane = least(begin, end, all, 1);
       Cell* const middle =
           std::stable_partition(begin, end, [&](const Cell& c) { return c.at[plane.axis] <= plane.at; });
@@ -261,8 +260,7 @@ class Divider {
     if (is_used_) part = static_cast<PartNumber>(sizes_.size()), sizes_.push_back(0);
     is_used_ = true;
     sizes_[part] = all;
-    for (const Cell* c = begin; c != end; ++c)
-      part_of[(std::size_t{c->at[0]} * kCells + c->at[1]) * kCells + c->at[2]] = part;
+    for (const Cell* c = begin; c != end; ++c) part_of[number_of_cell(c->at)] = part;
   }
 
   /// A plane behind the cells with coordinate `at`; axis < 0: none.
@@ -271,7 +269,7 @@ class Divider {
     double cost = std::numeric_limits<double>::infinity();
   };
 
-  /// The plane of least surface-area cost with at least so many references on each side.
+  /// The plane of least surface-area cost with at least `side` references, 1 or more, on each side.
   static Plane least(const Cell* begin, const Cell* end, std::uint64_t all, std::size_t side) {
     Plane best;
     for (int axis = 0; axis < 3; ++axis) {
@@ -287,8 +285,7 @@ class Divider {
       Cell left;
       for (int i = 0; i + 1 < kCells; ++i) {
         left.box.grow(slab[i].box), left.count += slab[i].count;
-        if (left.count < std::max<std::size_t>(side, 1) || all - left.count < std::max<std::size_t>(side, 1))
-          continue;
+        if (left.count < side || all - left.count < side) continue;
         const double cost = left.box.area() * static_cast<double>(left.count) + right_cost[i + 1];
         // Areas of huge scenes may overflow.
         if (best.axis < 0 || cost < best.cost) best = {axis, i, cost};
@@ -451,8 +448,7 @@ void build_in_parts(Accel& accel, const MeshSource& source, const std::vector<st
       });
       CellBox box;
       for (const CellBox& b : boxes) box.grow(b);
-      for (int axis = 0; axis < 3; ++axis)
-        part.bounds.lo[axis] = -box.negative_lo[axis], part.bounds.hi[axis] = box.hi[axis];
+      part.bounds = box.box();
       PrimRef& root = roots.refs[roots.count];
       for (int axis = 0; axis < 3; ++axis)
         root.negative_lo[axis] = box.negative_lo[axis], root.hi[axis] = box.hi[axis];

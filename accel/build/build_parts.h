@@ -19,7 +19,7 @@ std::uint64_t build_bytes(std::size_t triangles, const BuildOptions& options);
 void expect_memory(std::size_t triangles, const BuildOptions& options, std::uint64_t available);
 
 /// Does what build_tree does, for the triangles of the geometries `meshes` and for `others`, which it uses
-/// up. Sets accel.bounds too. Parts have at most BuildOptions::together references where that is possible.
+/// up. Grows accel.bounds too. Parts have at most half of BuildOptions::together references where possible.
 /// The same tree for any number of threads.
 void build_in_parts(Accel& accel, const MeshSource& source, const std::vector<std::uint32_t>& meshes,
                     Column<PrimRef>& others, ItemOrder& order, const BuildOptions& options,

@@ -72,7 +72,8 @@ unsigned same_corners(const LeafCorners& a, const LeafCorners& b, int k) {
   return same;
 }
 
-/// How many corners both have together, as it seems; more than there is room for if that is sure.
+/// How many corners both have together, by their marks; more than there is room for if a quick count says so,
+/// which may miss a corner that both have.
 int all_corners(const LeafCorners& a, const LeafCorners& b) {
   if (a.count + b.count - std::popcount(a.marks & b.marks) > TriangleBlock::kCorners)
     return TriangleBlock::kCorners + 1;

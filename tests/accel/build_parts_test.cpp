@@ -11,6 +11,7 @@
 #include "accel/build/build_parts.h"
 #include "accel/build/tree_store.h"
 #include "core/error.h"
+#include "tests/accel/child_box.h"
 #include "tests/accel/same_hits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/oracles/mesh.h"
@@ -76,8 +77,7 @@ class Walk {
       const BvhNode& node = accel_.nodes[ref.node_index()];
       for (int i = 0; i < BvhNode::kWidth; ++i) {
         if (node.child[i].is_none()) continue;
-        const Box child{{node.plane[0][i], node.plane[2][i], node.plane[4][i]},
-                        {node.plane[1][i], node.plane[3][i], node.plane[5][i]}};
+        const Box child = child_box(node, i);
         EXPECT_TRUE(box.contains(child));
         visit(node.child[i], child, depth + 1);
       }

@@ -9,6 +9,7 @@
 #include "accel/accel_data.h"
 #include "accel/build/mesh_source.h"
 #include "accel/query.h"
+#include "tests/accel/child_box.h"
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
@@ -92,8 +93,7 @@ class Leaves {
     const BvhNode& node = accel_.nodes[ref.node_index()];
     for (int i = 0; i < BvhNode::kWidth; ++i) {
       if (node.child[i].is_none()) continue;
-      const Box child{{node.plane[0][i], node.plane[2][i], node.plane[4][i]},
-                      {node.plane[1][i], node.plane[3][i], node.plane[5][i]}};
+      const Box child = child_box(node, i);
       EXPECT_TRUE(box.contains(child));
       visit(node.child[i], child, depth + 1);
     }
