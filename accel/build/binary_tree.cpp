@@ -133,6 +133,9 @@ constexpr std::size_t kMaxChunks = 64;
 /// More find no better plane.
 constexpr std::size_t kSampled = 1u << 13;
 constexpr std::size_t kMostSkipped = 8;
+/// The same of those that are sliced to find a spatial split, which takes several times as long.
+constexpr std::size_t kSliced = 1u << 10;
+constexpr std::size_t kMostUnsliced = 32;
 
 /// A spatial split is tried only if the children of the best object split overlap by more than this part of
 /// the scene's surface (Stich et al. 2009, section 4.5).
@@ -354,11 +357,14 @@ class Builder {
       return blocks_of(static_cast<std::uint32_t>(every) * count_of(object, on_right, grid, chunks, bins));
     };
     const double object_cost = half_area(side[0].box()) * blocks(false) + half_area(other) * blocks(true);
+    // `best` looks at all.
+    const std::size_t sliced =
+        effort_.every_axis ? 1 : std::clamp<std::size_t>(r.size() / kSliced, 1, kMostUnsliced);
     const SpatialSplit s =
-        find_spatial(r.from + r.begin, r.size(), all, triangles_, effort_.every_axis, parallel_);
+        find_spatial(r.from + r.begin, r.size(), all, triangles_, {effort_.every_axis, sliced, parallel_});
     if (s.axis < 0 || !(s.cost < object_cost)) return false;
-    const SpatialParts parts =
-        partition_spatial(r.from + r.begin, r.size(), r.room(), s, triangles_, r.to + r.first, r.to + r.last);
+    const SpatialParts parts = partition_spatial(r.from + r.begin, r.size(), r.room(), s, triangles_,
+                                                 parallel_, r.to + r.first, r.to + r.last);
     if (parts.left == 0) return false;
     if (parts.left + parts.right > r.size()) pieces_ = true;
     share_room(r, parts.left, parts.right, left, right);

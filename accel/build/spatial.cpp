@@ -114,9 +114,12 @@ void slice_triangle(const Slices& s, int axis, int first, int last, const Box& b
   }
 }
 
-void slice(const PrimRef* refs, std::size_t count, const Slices (&slices)[3],
-           const TriangleCorners& triangles, Sliced& out) {
-  for (std::size_t i = 0; i < count; ++i) {
+/// Slices refs[0, count): of each `every` times kBinGroup references the first kBinGroup. Returns how many.
+std::size_t slice(const PrimRef* refs, std::size_t count, std::size_t every, const Slices (&slices)[3],
+                  const TriangleCorners& triangles, Sliced& out) {
+  std::size_t sliced = 0;
+  for (std::size_t i = 0; i < count; i += (i + 1) % kBinGroup == 0 ? 1 + (every - 1) * kBinGroup : 1) {
+    ++sliced;
     const Box box = box_of(refs[i]);
     Vec3f v[3];
     bool have = false;
@@ -135,6 +138,48 @@ void slice(const PrimRef* refs, std::size_t count, const Slices (&slices)[3],
       slice_triangle(s, axis, first, last, box, v, out.box[axis]);
     }
   }
+  return sliced;
+}
+
+/// What lies on a side of a plane.
+struct SideCost {
+  double area, count;
+};
+
+/// A reference that is divided: its number, and its box on either side.
+struct CutReference {
+  std::size_t number;
+  Box side[2];
+};
+
+/// Where the references of a chunk go.
+struct ChunkSides {
+  std::size_t count[2] = {};
+  std::vector<CutReference> cut;  ///< by ascending number
+};
+
+constexpr std::uint8_t kOnLeft = 1, kOnRight = 2;
+
+/// The sides that a reference goes to, as kOnLeft and kOnRight, with its boxes there if it goes to both.
+std::uint8_t sides_of(const PrimRef& ref, const SpatialSplit& split, const SideCost (&cost)[2],
+                      const TriangleCorners& triangles, Box (&side)[2]) {
+  const Box box = box_of(ref);
+  const int axis = split.axis;
+  if (box.hi[axis] <= split.place) return kOnLeft;
+  if (box.lo[axis] >= split.place || !may_cut(ref)) return kOnRight;
+  Vec3f v[3];
+  triangles.corners(ref.item, v);
+  cut_box(box, axis, split.place, v, side);
+  if (side[0].empty()) return kOnRight;
+  if (side[1].empty()) return kOnLeft;
+  // "Reference unsplitting": the whole on the side that it makes less larger.
+  Box whole[2] = {split.side[0], split.side[1]};
+  whole[0].grow(box), whole[1].grow(box);
+  const double both = cost[0].area * cost[0].count + cost[1].area * cost[1].count;
+  const double only_left = half_area(whole[0]) * cost[0].count + cost[1].area * (cost[1].count - 1),
+               only_right = cost[0].area * (cost[0].count - 1) + half_area(whole[1]) * cost[1].count;
+  if (only_left < both && only_left <= only_right) return kOnLeft;
+  return only_right < both ? kOnRight : kOnLeft | kOnRight;
 }
 
 }  // namespace
@@ -146,18 +191,24 @@ double half_area(const Box& box) {
 }
 
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleCorners& triangles, bool every_axis, bool parallel) {
+                          const TriangleCorners& triangles, const SpatialSearch& search) {
   Slices slices[3];
   const float longest = max_component(box.extent());
   for (int axis = 0; axis < 3; ++axis)
-    if (every_axis || box.extent()[axis] >= longest) slices[axis] = Slices(box.lo[axis], box.hi[axis]);
+    if (search.every_axis || box.extent()[axis] >= longest) slices[axis] = Slices(box.lo[axis], box.hi[axis]);
   const Chunks chunks(count, kSlicedTogether);
   std::vector<Sliced> parts(chunks.count);
-  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
-    slice(refs + begin, end - begin, slices, triangles, parts[c]);
+  std::vector<std::size_t> sliced(chunks.count);
+  chunks.each(search.parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    sliced[c] = slice(refs + begin, end - begin, search.every, slices, triangles, parts[c]);
   });
-  for (std::size_t c = 1; c < parts.size(); ++c) parts[0].grow(parts[c]);
+  for (std::size_t c = 1; c < parts.size(); ++c) parts[0].grow(parts[c]), sliced[0] += sliced[c];
   const Sliced& all = parts[0];
+  const std::size_t total = sliced[0];
+  const double each = static_cast<double>(count) / static_cast<double>(total);
+  const auto blocks = [&](std::size_t n) {
+    return blocks_of(static_cast<std::uint32_t>(static_cast<double>(n) * each));
+  };
 
   SpatialSplit best;
   for (int axis = 0; axis < 3; ++axis) {
@@ -173,13 +224,13 @@ SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box
     side = {}, n = 0;
     for (int b = 0; b + 1 < kSlices; ++b) {
       side.grow(all.box[axis][b]), n += all.begins[axis][b];
-      if (n == 0 || rights[b + 1] == 0 || n == count || rights[b + 1] == count) continue;
-      const double cost = half_area(side) * blocks_of(static_cast<std::uint32_t>(n)) +
-                          half_area(right[b + 1]) * blocks_of(static_cast<std::uint32_t>(rights[b + 1]));
+      if (n == 0 || rights[b + 1] == 0 || n == total || rights[b + 1] == total) continue;
+      const double cost = half_area(side) * blocks(n) + half_area(right[b + 1]) * blocks(rights[b + 1]);
       if (cost < best.cost) {
         best.axis = axis, best.place = slices[axis].place[b + 1], best.cost = cost;
         best.side[0] = side, best.side[1] = right[b + 1];
-        best.count[0] = n, best.count[1] = rights[b + 1];
+        best.count[0] = static_cast<double>(n) * each;
+        best.count[1] = static_cast<double>(rights[b + 1]) * each;
       }
     }
   }
@@ -187,48 +238,41 @@ SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box
 }
 
 SpatialParts partition_spatial(const PrimRef* refs, std::size_t count, std::size_t room,
-                               const SpatialSplit& split, const TriangleCorners& triangles, PrimRef* left,
-                               PrimRef* right) {
-  const double area[2] = {half_area(split.side[0]), half_area(split.side[1])};
-  const auto n0 = static_cast<double>(split.count[0]), n1 = static_cast<double>(split.count[1]);
-  const double both = area[0] * n0 + area[1] * n1;
-  SpatialParts parts;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Box box = box_of(refs[i]);
-    const int axis = split.axis;
-    bool to_left = box.hi[axis] <= split.place, to_right = !to_left && box.lo[axis] >= split.place;
-    Box side[2] = {box, box};
-    if (!to_left && !to_right) {
-      to_left = to_right = true;
-      if (!may_cut(refs[i])) {
-        to_left = false;
-      } else {
-        Vec3f v[3];
-        triangles.corners(refs[i].item, v);
-        cut_box(box, axis, split.place, v, side);
-        if (side[0].empty()) to_left = false;
-        if (side[1].empty()) to_right = false;
-        if (!to_left && !to_right) to_right = true;
-      }
-      if (to_left && to_right) {
-        // "Reference unsplitting": the whole on the side that it makes less larger.
-        Box whole[2] = {split.side[0], split.side[1]};
-        whole[0].grow(box), whole[1].grow(box);
-        const double only_left = half_area(whole[0]) * n0 + area[1] * (n1 - 1),
-                     only_right = area[0] * (n0 - 1) + half_area(whole[1]) * n1;
-        if (only_left < both && only_left <= only_right)
-          to_right = false;
-        else if (only_right < both)
-          to_left = false;
-      }
-      if (!to_left || !to_right) side[0] = side[1] = box;
+                               const SpatialSplit& split, const TriangleCorners& triangles, bool parallel,
+                               PrimRef* left, PrimRef* right) {
+  const SideCost cost[2] = {{half_area(split.side[0]), split.count[0]},
+                            {half_area(split.side[1]), split.count[1]}};
+  const Chunks chunks(count, kSlicedTogether);
+  std::vector<std::uint8_t> sides(count);
+  std::vector<ChunkSides> parts(chunks.count);
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    ChunkSides& part = parts[c];
+    for (std::size_t i = begin; i < end; ++i) {
+      Box side[2];
+      sides[i] = sides_of(refs[i], split, cost, triangles, side);
+      part.count[0] += sides[i] & kOnLeft, part.count[1] += sides[i] / kOnRight;
+      if (sides[i] == (kOnLeft | kOnRight)) part.cut.push_back({i, {side[0], side[1]}});
     }
-    if (parts.left + parts.right + to_left + to_right > room) return {};
-    if (to_left) left[parts.left++] = with_box(refs[i], side[0]);
-    if (to_right) *(right - ++parts.right) = with_box(refs[i], side[1]);
+  });
+  SpatialParts all;
+  for (ChunkSides& part : parts) {
+    const std::size_t before[2] = {all.left, all.right};
+    all.left += part.count[0], all.right += part.count[1];
+    part.count[0] = before[0], part.count[1] = before[1];
   }
-  if (parts.left == 0 || parts.right == 0 || parts.left == count || parts.right == count) return {};
-  return parts;
+  if (all.left + all.right > room) return {};
+  if (all.left == 0 || all.right == 0 || all.left == count || all.right == count) return {};
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    const CutReference* cut = parts[c].cut.data();
+    PrimRef *to_left = left + parts[c].count[0], *to_right = right - parts[c].count[1];
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool is_cut = sides[i] == (kOnLeft | kOnRight);
+      if (sides[i] & kOnLeft) *to_left++ = is_cut ? with_box(refs[i], cut->side[0]) : refs[i];
+      if (sides[i] & kOnRight) *--to_right = is_cut ? with_box(refs[i], cut->side[1]) : refs[i];
+      cut += is_cut;
+    }
+  });
+  return all;
 }
 
 }  // namespace oktett

@@ -52,16 +52,23 @@ struct SpatialSplit {
   float place = 0;
   double cost = std::numeric_limits<double>::infinity();  ///< areas times blocks of eight, as of `unit` 1
   Box side[2];
-  std::size_t count[2] = {};
+  double count[2] = {};  ///< of references; about, where a sample was sliced
 };
 
 /// Half the surface of a box in double, where no float overflows.
 double half_area(const Box& box);
 
-/// The plane of least surface-area cost among equidistant ones across the longest axis of `box`, which bounds
-/// refs[0, count), or across every axis.
+/// How planes are sought.
+struct SpatialSearch {
+  bool every_axis = false;  ///< across every axis, not only across the longest
+  std::size_t every = 1;    ///< of so many groups of kBinGroup references one is looked at
+  bool parallel = false;
+};
+
+/// The plane of least surface-area cost among equidistant ones across axes of `box`, which bounds refs[0,
+/// count).
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleCorners& triangles, bool every_axis, bool parallel);
+                          const TriangleCorners& triangles, const SpatialSearch& search);
 
 /// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]). A triangle
 /// that crosses the plane becomes a reference on each side or, where that is cheaper, a whole one on one
@@ -71,7 +78,7 @@ struct SpatialParts {
   std::size_t left = 0, right = 0;
 };
 SpatialParts partition_spatial(const PrimRef* refs, std::size_t count, std::size_t room,
-                               const SpatialSplit& split, const TriangleCorners& triangles, PrimRef* left,
-                               PrimRef* right);
+                               const SpatialSplit& split, const TriangleCorners& triangles, bool parallel,
+                               PrimRef* left, PrimRef* right);
 
 }  // namespace oktett

@@ -55,11 +55,11 @@ struct Sides {
 Sides split(const Soup& soup, std::size_t room, bool every_axis = true, bool parallel = false) {
   const std::size_t n = soup.refs.size();
   Sides s;
-  s.split = find_spatial(soup.refs.data(), n, soup.bounds, soup, every_axis, parallel);
+  s.split = find_spatial(soup.refs.data(), n, soup.bounds, soup, {every_axis, 1, parallel});
   if (s.split.axis < 0) return s;
   std::vector<PrimRef> to(room);
   const SpatialParts parts =
-      partition_spatial(soup.refs.data(), n, room, s.split, soup, to.data(), to.data() + room);
+      partition_spatial(soup.refs.data(), n, room, s.split, soup, parallel, to.data(), to.data() + room);
   s.left.assign(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(parts.left));
   s.right.assign(to.end() - static_cast<std::ptrdiff_t>(parts.right), to.end());
   return s;
@@ -158,13 +158,42 @@ TEST(Spatial, OnlyWatertightTrianglesAreCut) {
 
 TEST(Spatial, SameForAnyNumberOfTasks) {
   const Soup soup = random_soup(20000, 1, {}, 7);
-  const SpatialSplit a = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, true, false),
-                     b = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, true, true);
-  ASSERT_GE(a.axis, 0);
-  EXPECT_EQ(a.axis, b.axis);
-  EXPECT_EQ(a.place, b.place);
-  EXPECT_EQ(a.cost, b.cost);
-  EXPECT_EQ(a.count[0], b.count[0]);
+  for (const std::size_t every : {1u, 5u}) {
+    const SpatialSplit a = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup,
+                                        {true, every, false}),
+                       b = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup,
+                                        {true, every, true});
+    ASSERT_GE(a.axis, 0);
+    EXPECT_EQ(a.axis, b.axis);
+    EXPECT_EQ(a.place, b.place);
+    EXPECT_EQ(a.cost, b.cost);
+    EXPECT_EQ(a.count[0], b.count[0]);
+  }
+  const Sides one = split(soup, 40000), several = split(soup, 40000, true, true);
+  ASSERT_GT(one.left.size() + one.right.size(), soup.refs.size());
+  const auto same = [](const std::vector<PrimRef>& a, const std::vector<PrimRef>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(a[i].item, b[i].item);
+      ASSERT_EQ(box_of(a[i]), box_of(b[i]));
+    }
+  };
+  same(one.left, several.left), same(one.right, several.right);
+}
+
+// A plane found by a sample costs about as much as that found by all.
+TEST(Spatial, SamplesFindGoodPlanes) {
+  for (const std::uint64_t seed : {10u, 11u, 12u}) {
+    const Soup soup = random_soup(30000, 1, {}, seed);
+    const auto search = [&](std::size_t every) {
+      return find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, {true, every, false});
+    };
+    const SpatialSplit all = search(1), some = search(29);
+    ASSERT_GE(some.axis, 0);
+    EXPECT_NEAR(some.cost, all.cost, 0.1 * all.cost);
+    EXPECT_NEAR(some.count[0] + some.count[1], all.count[0] + all.count[1],
+                0.05 * (all.count[0] + all.count[1]));
+  }
 }
 
 TEST(Spatial, OneAxisIsTheLongest) {
