@@ -16,6 +16,11 @@ std::uint32_t append_materials(std::vector<Material> materials, std::vector<Text
       if (texture != kNoId) texture += first_texture;
     });
   }
+  for (Texture& texture : textures)
+    if (texture.pattern)
+      for_each_nested_texture(*texture.pattern, [first_texture](std::uint32_t& nested) {
+        if (nested != kNoId) nested += first_texture;
+      });
   std::move(materials.begin(), materials.end(), std::back_inserter(scene.materials));
   std::move(textures.begin(), textures.end(), std::back_inserter(scene.textures));
   std::move(media.begin(), media.end(), std::back_inserter(scene.media));

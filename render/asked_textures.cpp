@@ -8,7 +8,7 @@ std::vector<Texture> asked_textures(const Scene& scene, bool data_layers) {
   if (traits(kind).bounces()) return textures;
   std::vector<bool> asked(textures.size(), false);
   const auto ask = [&](std::uint32_t texture) {
-    if (texture < asked.size()) asked[texture] = true;
+    for_each_shown_texture(scene.textures, texture, [&](std::uint32_t shown) { asked[shown] = true; });
   };
   const bool normals = data_layers || kind == IntegratorKind::normal || kind == IntegratorKind::ao;
   const bool colors = data_layers || kind == IntegratorKind::albedo;

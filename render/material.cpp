@@ -17,13 +17,23 @@ struct TextureBounds {
   Color least{1, 1, 1}, greatest{1, 1, 1};
 };
 
-TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index) {
+TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index, unsigned depth = 0) {
   TextureBounds bounds;
-  if (index >= textures.size()) return bounds;
+  if (index >= textures.size() || depth > kMostNestedTextures) return bounds;
   const Texture& t = textures[index];
   std::vector<Color> ends{{0, 0, 0}, {1, 1, 1}};
   // Between its colours a pattern is interpolated.
-  if (t.pattern && !t.pattern->colors.empty()) ends = t.pattern->colors;
+  if (t.pattern && !t.pattern->map.empty()) {
+    ends.clear();
+    for (const PatternEntry& entry : t.pattern->map) {
+      const bool is_color = entry.texture == TextureIndex{};
+      const TextureBounds other = is_color ? TextureBounds{entry.color, entry.color}
+                                           : texture_bounds(textures, entry.texture.index, depth + 1);
+      ends.push_back(other.least), ends.push_back(other.greatest);
+    }
+  } else if (t.pattern && !t.pattern->colors.empty()) {
+    ends = t.pattern->colors;
+  }
   for (int k = 0; k < 3; ++k) {
     const auto value = [&](const Color& c) { return std::max(c[k] * t.gain + t.base, 0.0f); };
     bounds.least[k] = bounds.greatest[k] = value(ends[0]);
@@ -51,7 +61,7 @@ float greatest_albedo(const Material& m, std::span<const Texture> textures) {
   const float transparency = most(m.transparency, m.transparency_texture, 1);
   Color sum = color * most(m.diffuse, m.diffuse_texture, kAny) +
               m.specular_color * bounds(m.specular_texture).greatest * mirror;
-  const Color passing = m.filter.value_or(color);
+  const Color passing = m.filter ? *m.filter * bounds(m.filter_texture).greatest : color;
   for (int k = 0; k < 3; ++k) sum[k] += transparency * std::max(1.0f, passing[k]);
   return max_component(sum);
 }

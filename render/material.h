@@ -149,7 +149,7 @@ struct Material {
   // Each multiplies the number of its name.
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
-  std::uint32_t ior_texture = kNoId;
+  std::uint32_t ior_texture = kNoId, filter_texture = kNoId;
   /// These multiply `color` and `opacity` once more: colours of vertices beside an image.
   std::uint32_t tint_texture = kNoId, tint_opacity_texture = kNoId;
   /// False: the boundary of the interior has no surface, and light passes it as if it were not there.
@@ -188,12 +188,23 @@ OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
   f(m.color_texture), f(m.specular_texture), f(m.emission_texture);
   f(m.opacity_texture), f(m.bump_texture), f(m.normal_texture);
   for (const PhongNumber& number : kPhongNumbers) f(m.*number.texture);
-  f(m.ior_texture), f(m.tint_texture), f(m.tint_opacity_texture);
+  f(m.ior_texture), f(m.filter_texture), f(m.tint_texture), f(m.tint_opacity_texture);
   if (!m.principled) return;
   for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
   for (const PrincipledColor& color : kPrincipledColors) f((*m.principled).*color.texture);
   f(m.principled->eta_texture), f(m.principled->k_texture), f(m.principled->coat_normal_texture);
   f(m.principled->anisotropy_direction_texture);
+}
+
+/// Calls f(index) for each texture in `list` that a texture shows, itself first.
+template <class F>
+void for_each_shown_texture(std::span<const Texture> list, std::uint32_t texture, F&& f, unsigned depth = 0) {
+  if (texture >= list.size() || depth > kMostNestedTextures) return;
+  f(texture);
+  if (list[texture].pattern)
+    for_each_nested_texture(*list[texture].pattern, [&](const std::uint32_t& nested) {
+      for_each_shown_texture(list, nested, f, depth + 1);
+    });
 }
 
 /// The range of a textured Material::ior.

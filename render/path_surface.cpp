@@ -62,7 +62,7 @@ PhongParameters phong_parameters(const ShadingPoint& p) {
   parameters.phong = p.values.phong;
   parameters.reflection = p.values.reflection;
   parameters.transparency = p.values.transparency;
-  parameters.filter = p.material->filter;
+  parameters.filter = p.filter;
   parameters.ior = p.ior;
   return parameters;
 }

@@ -5,54 +5,11 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "core/random.h"
+#include "render/pattern_noise.h"
+#include "render/pattern_values.h"
 
 namespace oktett {
 namespace {
-
-/// The integer below `x` as a number for hashing; 0 where it does not fit.
-std::int64_t cell_of(double x) { return std::abs(x) < 0x1p62 ? static_cast<std::int64_t>(std::floor(x)) : 0; }
-
-/// Random bits of a point of the integer lattice.
-std::uint64_t lattice_bits(std::int64_t x, std::int64_t y, std::int64_t z) {
-  std::uint64_t bits = mix_bits(static_cast<std::uint64_t>(x) + kGoldenBits);
-  bits = mix_bits(bits + static_cast<std::uint64_t>(y) + kGoldenBits);
-  return mix_bits(bits + static_cast<std::uint64_t>(z) + kGoldenBits);
-}
-
-/// The scalar product of `d` with the gradient of a lattice point: one of the twelve vectors to the middles
-/// of the edges of a cube.
-double edge_product(std::uint64_t bits, const Vec3d& d) {
-  const double a = bits & 1 ? -1 : 1, b = bits & 2 ? -1 : 1;
-  switch ((bits >> 32) % 3) {
-    case 0:
-      return a * d.x + b * d.y;
-    case 1:
-      return a * d.y + b * d.z;
-    default:
-      return a * d.z + b * d.x;
-  }
-}
-
-/// 0 at 0 and 1 at 1, with first and second derivatives of 0 there.
-double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-
-double mix(double a, double b, double t) { return a + (b - a) * t; }
-
-/// Gradient noise after Perlin (2002) in [-1, 1]; 0 at the points of the integer lattice.
-double gradient_noise(const Vec3d& p) {
-  const std::int64_t x = cell_of(p.x), y = cell_of(p.y), z = cell_of(p.z);
-  const Vec3d f{p.x - std::floor(p.x), p.y - std::floor(p.y), p.z - std::floor(p.z)};
-  double corner[8];
-  for (int i = 0; i < 8; ++i) {
-    const int dx = i & 1, dy = i >> 1 & 1, dz = i >> 2;
-    corner[i] = edge_product(lattice_bits(x + dx, y + dy, z + dz), f - Vec3d{1.0 * dx, 1.0 * dy, 1.0 * dz});
-  }
-  const double u = fade(f.x), v = fade(f.y), w = fade(f.z);
-  const double low = mix(mix(corner[0], corner[1], u), mix(corner[2], corner[3], u), v);
-  const double high = mix(mix(corner[4], corner[5], u), mix(corner[6], corner[7], u), v);
-  return mix(low, high, w);
-}
 
 /// Noise of all octaves, in [-1, 1].
 double turbulence(const Turbulence& t, Vec3d p) {
@@ -103,56 +60,179 @@ double value_of(const WoodPattern& w, const Vec3d& p) {
   return part * part * (3 - 2 * part);
 }
 
+/// Whether values beyond 0 and 1 have the first and the last colour, unless a wave is asked for.
+template <class P>
+constexpr bool kClamps = requires(const P& pattern) {
+  value_of(pattern, Vec3d{});
+};
+/// Whether the pattern has single values.
+template <class P>
+constexpr bool kIsBlocks = requires {
+  P::kValues;
+};
+
+template <class P>
+constexpr WaveShape own_wave() {
+  return requires { P::kTriangle; }
+  ? WaveShape::triangle : WaveShape::ramp;
+}
+
+/// What becomes of a number outside [0, 1]. A NaN becomes 0.
+double clamped(double value) { return value > 0 ? std::min(value, 1.0) : 0; }
+
+bool is_plain(const Wave& wave) {
+  return wave.shape == WaveShape::own && wave.frequency == 1 && wave.phase == 0;
+}
+
+/// The value before and after the wave.
+struct PatternSample {
+  double raw, value;
+};
+
+PatternSample sample(const Pattern& pattern, const Vec3d& p, const PatternFrame& frame) {
+  return std::visit(
+      [&]<class P>(const P& kind) -> PatternSample {
+        if constexpr (kClamps<P>) {
+          const double raw = value_of(kind, p);
+          return {raw, is_plain(frame.wave) ? clamped(raw) : waved(frame.wave, WaveShape::ramp, raw)};
+        } else {
+          const double raw = raw_value(kind, p, frame);
+          if constexpr (kIsBlocks<P>)
+            return {raw, clamped(raw / (P::kValues - 1))};
+          else
+            return {raw, waved(frame.wave, own_wave<P>(), raw)};
+        }
+      },
+      pattern);
+}
+
+/// Some patterns use turbulence otherwise than by displacing places.
+bool displaces(const Pattern& pattern) {
+  return !std::holds_alternative<LayersPattern>(pattern) && !std::holds_alternative<RingsPattern>(pattern);
+}
+
+/// The place in the pattern that a place of its own space shows.
+Vec3d place_in(const PatternTexture& texture, const Vec3d& p) {
+  const Vec3d q = warped(texture.warps, p);
+  return displaces(texture.pattern) ? displaced(texture.turbulence, q) : q;
+}
+
+/// The colour at a place of a pattern whose value there is `value`.
+Color color_at(const PatternTexture& texture, double value, const Vec3d& place,
+               const PatternTextures* others) {
+  if (texture.map.empty()) {
+    const std::vector<Color>& colors = texture.colors;
+    const std::size_t last = colors.size() - 1;
+    const double at = value * static_cast<double>(last);
+    const auto before = static_cast<std::size_t>(at);
+    if (before >= last) return colors[last];
+    const auto part = static_cast<float>(at - static_cast<double>(before));
+    return colors[before] * (1 - part) + colors[before + 1] * part;
+  }
+  const auto color_of = [&](const PatternEntry& entry) {
+    if (entry.texture.index == TextureIndex{}.index) return entry.color;
+    return others == nullptr ? Color{0, 0, 0} : others->color(entry.texture.index, place);
+  };
+  const std::vector<PatternEntry>& map = texture.map;
+  const auto after = std::ranges::find_if(map, [&](const PatternEntry& entry) { return entry.at > value; });
+  if (after == map.begin()) return color_of(*after);
+  const PatternEntry& before = *(after - 1);
+  if (after == map.end() || before.at == value) return color_of(before);
+  const auto part = static_cast<float>((value - before.at) / (after->at - before.at));
+  return color_of(before) * (1 - part) + color_of(*after) * part;
+}
+
 /// What a pattern looks like at this scale is smooth.
 double detail_of(const Pattern& pattern) {
   return std::visit(
-      [](const auto& kind) -> double {
+      []<class P>(const P& kind) -> double {
         if constexpr (requires { kind.turbulence; })
           return kind.size * portable::exp2(-static_cast<double>(kind.turbulence.octaves));
         else if constexpr (requires { kind.size; })
           return kind.size;
         else if constexpr (requires { kind.outer; })
           return kind.outer - kind.inner;
-        else
+        else if constexpr (requires { kind.from; })
           return length(kind.to - kind.from);
+        else if constexpr (std::is_same_v<P, GranitePattern>)
+          return 0x1p-7;
+        else if constexpr (std::is_same_v<P, WrinklesPattern>)
+          return 0x1p-9;
+        else
+          return 1;
       },
       pattern);
+}
+
+/// The same with turbulence and waves.
+double detail_of(const PatternTexture& texture) {
+  double detail = detail_of(texture.pattern);
+  if (std::abs(texture.wave.frequency) > 1) detail /= std::abs(texture.wave.frequency);
+  const PatternTurbulence& t = texture.turbulence;
+  if (t.amount == Vec3d{0, 0, 0} || t.lambda <= 1) return detail;
+  return std::min(detail, portable::pow(t.lambda, 1 - static_cast<double>(t.octaves)));
+}
+
+/// Whether values on both sides of a place do not hang together.
+bool is_broken(const PatternTexture& texture, const PatternSample& before, const PatternSample& after) {
+  return std::visit(
+      [&]<class P>(const P& kind) {
+        bool steps = kIsBlocks<P> || requires { P::kSteps; };
+        if constexpr (requires { kind.solid; }) steps = kind.solid;
+        if (steps) {
+          return before.raw != after.raw;
+        } else {
+          if (kClamps<P> && is_plain(texture.wave)) return false;
+          constexpr double kMostDifference = 0.25;
+          const bool far_apart = std::abs(after.raw - before.raw) > kMostDifference;
+          return far_apart || (jumps(texture.wave, own_wave<P>()) &&
+                               period_of(texture.wave, before.raw) != period_of(texture.wave, after.raw));
+        }
+      },
+      texture.pattern);
 }
 
 }  // namespace
 
 double pattern_value(const Pattern& pattern, const Vec3d& p) {
-  const double value = std::visit([&](const auto& kind) { return value_of(kind, p); }, pattern);
-  // A NaN becomes 0.
-  return value > 0 ? std::min(value, 1.0) : 0;
+  const PatternTurbulence none;
+  const Wave own;
+  return sample(pattern, p, {none, own}).value;
 }
 
-Color pattern_color(const PatternTexture& texture, const Vec3d& p) {
-  const std::vector<Color>& colors = texture.colors;
-  const std::size_t last = colors.size() - 1;
-  const double at = pattern_value(texture.pattern, texture.to_pattern.point(p)) * static_cast<double>(last);
-  const auto before = static_cast<std::size_t>(at);
-  if (before >= last) return colors[last];
-  const auto part = static_cast<float>(at - static_cast<double>(before));
-  return colors[before] * (1 - part) + colors[before + 1] * part;
+Color pattern_color(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
+  const Vec3d place = place_in(texture, texture.to_pattern.point(p));
+  const PatternFrame frame{texture.turbulence, texture.wave, others};
+  return color_at(texture, sample(texture.pattern, place, frame).value, place, others);
 }
 
-Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p) {
-  const std::vector<Color>& colors = texture.colors;
-  const auto height = [&](const Vec3d& q) {
-    const double at = pattern_value(texture.pattern, q) * static_cast<double>(colors.size() - 1);
+Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
+  const PatternFrame frame{texture.turbulence, texture.wave, others};
+  struct Height {
+    PatternSample sample;
+    double height;
+  };
+  const auto height_at = [&](const Vec3d& q) -> Height {
+    const Vec3d place = place_in(texture, q);
+    const PatternSample found = sample(texture.pattern, place, frame);
+    if (!texture.map.empty()) return {found, double{color_at(texture, found.value, place, others).x}};
+    const std::vector<Color>& colors = texture.colors;
+    const double at = found.value * static_cast<double>(colors.size() - 1);
     const auto before = std::min(static_cast<std::size_t>(at), colors.size() - 1);
     const auto after = std::min(before + 1, colors.size() - 1);
     const double low = colors[before].x, high = colors[after].x;
-    return low + (high - low) * (at - static_cast<double>(before));
+    return {found, low + (high - low) * (at - static_cast<double>(before))};
   };
   const Vec3d place = texture.to_pattern.point(p);
-  const double step = detail_of(texture.pattern) * 0x1p-10;
+  const double step = detail_of(texture) * 0x1p-10;
   Vec3d slope;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d before = place, after = place;
     before[axis] -= step, after[axis] += step;
-    slope[axis] = (height(after) - height(before)) / (after[axis] - before[axis]);
+    const Height high = height_at(after), low = height_at(before);
+    slope[axis] = is_broken(texture, low.sample, high.sample)
+                      ? 0
+                      : (high.height - low.height) / (after[axis] - before[axis]);
   }
   return texture.to_pattern.normal_by_inverse(slope);
 }

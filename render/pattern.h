@@ -9,6 +9,8 @@
 #include "core/description.h"
 #include "core/transform.h"
 #include "core/vec3.h"
+#include "render/pattern_kinds.h"
+#include "render/warp.h"
 
 namespace oktett {
 
@@ -113,9 +115,25 @@ struct WoodPattern {
   bool operator==(const WoodPattern&) const = default;
 };
 
-/// A pattern of any kind.
+/// A pattern of any kind. Those of pattern_kinds.h have their place and size by the transform.
 using Pattern =
-    std::variant<CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern>;
+    std::variant<CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern,
+                 AgatePattern, AngularPattern, BoxedPattern, BrickPattern, CellsPattern, CracklePattern,
+                 CubicPattern, CylindricalPattern, DentsPattern, DoubleSpiralPattern, FractalPattern,
+                 FunctionPattern, GranitePattern, HexagonPattern, LayersPattern, LeopardPattern,
+                 LinearPattern, OnionPattern, PlanarPattern, QuiltedPattern, RingsPattern, RipplesPattern,
+                 SphericalPattern, SpiralPattern, TexturePattern, WavesPattern, WrinklesPattern>;
+
+/// A colour, or another texture, at a value of a pattern.
+struct PatternEntry {
+  double at = 0;
+  Color color{0, 0, 0};
+  TextureIndex texture{};  ///< instead of the colour, if it is given
+  bool operator==(const PatternEntry&) const = default;
+};
+
+/// Most textures of which each is an entry of the one before. A deeper one is black.
+inline constexpr unsigned kMostNestedTextures = 8;
 
 /// A pattern with its colours and where it lies.
 struct PatternTexture {
@@ -123,17 +141,41 @@ struct PatternTexture {
   /// Evenly spaced from 0 to 1, linear in between; at least one.
   std::vector<Color> colors{{0, 0, 0}, {1, 1, 1}};
   Affine to_pattern;  ///< from the object's space to that of the pattern
+  /// Instead of `colors`, if there are any: at ascending places, linear in between, constant before the first
+  /// and after the last. Of several at one place, the first ends what is before, the last begins what
+  /// follows.
+  std::vector<PatternEntry> map{};
+  Wave wave{};
+  PatternTurbulence turbulence{};  ///< nearest to the pattern
+  std::vector<Warp>
+      warps{};  ///< between the turbulence and the transform; the first is nearest to the pattern
   bool operator==(const PatternTexture&) const = default;
+};
+
+/// The textures of a scene, as entries of patterns need them.
+class PatternTextures {
+ public:
+  virtual ~PatternTextures() = default;
+  /// The colour of a texture (into Scene::textures) where the object's own place is `position`.
+  virtual Color color(std::uint32_t texture, const Vec3d& position) const = 0;
 };
 
 /// The value in [0, 1] of the pattern at a point of its own space; 0 where the point is not finite.
 double pattern_value(const Pattern& pattern, const Vec3d& p);
 
-/// The colour at a point of the object's space.
-Color pattern_color(const PatternTexture& texture, const Vec3d& p);
+/// The colour at a point of the object's space. Without `others`, entries that are textures are black.
+Color pattern_color(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others = nullptr);
 
 /// The gradient of the first channel of the colour at a point of the object's space, from differences over
-/// a thousandth of the smallest detail.
-Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p);
+/// a thousandth of the smallest detail. Along an axis where the value jumps it is 0.
+Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others = nullptr);
+
+/// Calls f(index) for each texture that a pattern, which may be const, shows a part of. Indices that are not
+/// given are kNoId.
+template <class AnyPattern, class F>
+void for_each_nested_texture(AnyPattern& pattern, F&& f) {
+  for (auto& entry : pattern.map) f(entry.texture.index);
+  if (auto* const shown = std::get_if<TexturePattern>(&pattern.pattern)) f(shown->texture.index);
+}
 
 }  // namespace oktett

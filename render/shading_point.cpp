@@ -58,10 +58,39 @@ static Color valid_color(const Color& c) {
   return {valid(c.x), valid(c.y), valid(c.z)};
 }
 
-Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place) {
+static Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place,
+                           unsigned depth);
+
+namespace {
+
+/// The textures that a pattern at a place shows. They are `depth` patterns deep.
+class NestedTextures final : public PatternTextures {
+ public:
+  NestedTextures(const Textures& textures, const TexturePlace& place, unsigned depth)
+      : textures_(textures), place_(place), depth_(depth) {}
+
+  Color color(std::uint32_t texture, const Vec3d& position) const override {
+    if (depth_ > kMostNestedTextures) return {0, 0, 0};
+    TexturePlace place = place_;
+    place.position = position;
+    return texture_color(textures_, texture, place, depth_);
+  }
+
+ private:
+  const Textures& textures_;
+  const TexturePlace& place_;
+  unsigned depth_;
+};
+
+}  // namespace
+
+static Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place,
+                           unsigned depth) {
   if (const PatternTexture* pattern = pattern_in(textures.list, texture)) {
     const Texture& t = textures.list[texture];
-    return valid_color(pattern_color(*pattern, place.position) * t.gain + Color{t.base, t.base, t.base});
+    const NestedTextures nested(textures, place, depth + 1);
+    return valid_color(pattern_color(*pattern, place.position, &nested) * t.gain +
+                       Color{t.base, t.base, t.base});
   }
   if (const Texture* t = attribute_in(textures.list, texture)) {
     const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
@@ -70,6 +99,10 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
   if (texture == kNoId || textures.images == nullptr) return {1, 1, 1};
   const UvPlace& at = uv_place(textures.list, texture, place);
   return valid_color(textures.images->color(texture, at.uv, at.dx, at.dy));
+}
+
+Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place) {
+  return texture_color(textures, texture, place, 0);
 }
 
 /// The number of a texture; 1 for kNoId.
@@ -178,6 +211,12 @@ float opacity_at(const RenderContext& c, const Material& m, const TexturePlace& 
 /// Of diffuse light, and of light that passes.
 Color color_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
   return textured(c, textured(c, m.color, m.color_texture, place), m.tint_texture, place);
+}
+
+/// Of light that passes, if it is not the colour.
+std::optional<Color> filter_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
+  if (!m.filter) return std::nullopt;
+  return textured(c, *m.filter, m.filter_texture, place);
 }
 
 PrincipledParameters principled_at(const RenderContext& c, const PrincipledMaterial& m, const Color& color,
@@ -356,11 +395,12 @@ struct TextureNeeds {
 
 TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
   TextureNeeds needs;
-  for_each_texture(m, [&](std::uint32_t t) {
-    if (t >= list.size()) return;
-    needs.position = needs.position || list[t].pattern;
-    needs.mesh = needs.mesh || !list[t].attribute.empty();
-    needs.second_uvs = needs.second_uvs || list[t].uv_layer != 0;
+  for_each_texture(m, [&](std::uint32_t texture) {
+    for_each_shown_texture(list, texture, [&](std::uint32_t t) {
+      needs.position = needs.position || list[t].pattern;
+      needs.mesh = needs.mesh || !list[t].attribute.empty();
+      needs.second_uvs = needs.second_uvs || list[t].uv_layer != 0;
+    });
   });
   return needs;
 }
@@ -406,7 +446,10 @@ class TexturedHit {
     Vec3f n = s_.shading_normal;
     if (const PatternTexture* pattern = pattern_in(context_.texture_list, m_.bump_texture)) {
       const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
-      n = bumped_by_slope(pattern_slope(*pattern, place.position) * double{scale}, to_world_, to_object_, n);
+      const Textures textures{context_.texture_list, context_.textures};
+      const NestedTextures nested(textures, place, 1);
+      n = bumped_by_slope(pattern_slope(*pattern, place.position, &nested) * double{scale}, to_world_,
+                          to_object_, n);
     } else if (const Texture* attribute = attribute_in(context_.texture_list, m_.bump_texture)) {
       const double scale = double{m_.bump_scale} * double{attribute->gain};
       n = bumped_by_slope(attribute_slope(*attribute, place.on_mesh) * scale, to_world_, to_object_, n);
@@ -534,6 +577,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.specular_color = textured(context, m.specular_color, m.specular_texture, place);
   p.emission = textured(context, m.emission, m.emission_texture, place);
   p.values = phong_values(context, m, place);
+  p.filter = filter_at(context, m, place);
   p.opacity = opacity_at(context, m, place);
   p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
   if ((textured_here || by_path) && shows_principled(context, m)) set_principled(context, place, p);
@@ -663,7 +707,7 @@ StraightPassage straight_passage(const RenderContext& context, const Ray& ray, c
   const FaceSplit split =
       by_path ? split_at(face, principled_at(context, *m.principled, color, place), passage.front)
               : split_at(face, static_cast<double>(transparency_at(context, m, place)));
-  const Color filter = m.filter && !by_path ? *m.filter : color;
+  const Color filter = by_path ? color : filter_at(context, m, place).value_or(color);
   for (int k = 0; k < 3; ++k)
     passage.passed[k] = filter[k] * (static_cast<float>(split.passed[k]) * opacity) + passage.passed[k];
   passage.reflected = std::clamp(static_cast<float>(split.reflected) * opacity, 0.0f, 1.0f);

@@ -63,6 +63,7 @@ struct ShadingPoint {
   Color color, specular_color, emission;           ///< textures included
   float ior = 1.5f;                                ///< inside relative to outside; textures included
   PhongValues values{};                            ///< textures included
+  std::optional<Color> filter;                     ///< of Material; textures included
   float opacity = 1;                               ///< fraction that is surface; the rest is a hole
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };

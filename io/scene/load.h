@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -60,6 +61,12 @@ struct NamedList {
   std::vector<Location> places;  ///< of the names
 };
 
+/// The textures that a pattern shows.
+struct NestedPattern {
+  unsigned depth = 0;     ///< the longest chain of patterns in patterns, itself included
+  std::size_t count = 1;  ///< all of them, as often as each is shown
+};
+
 struct SceneLoad {
   explicit SceneLoad(const Definitions& definitions) : parameters(definitions), values(parameters) {}
   SceneLoad(const SceneLoad&) = delete;
@@ -75,9 +82,10 @@ struct SceneLoad {
   GltfOptions gltf;                          ///< of included glTF files
   std::set<std::string> light_groups;        ///< names that lights and materials have given
   std::unordered_map<std::string, NamedObjects> named_objects;
-  std::vector<NamedList> light_lists;  ///< of Scene::light_lists
-  std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
-  std::vector<bool> prototype_hides;   ///< per prototype: not all that it shows is visible to all rays
+  std::map<std::uint32_t, NestedPattern> patterns;  ///< by their index among the textures
+  std::vector<NamedList> light_lists;               ///< of Scene::light_lists
+  std::vector<int> prototype_levels;                ///< of instances, its own included, per prototype
+  std::vector<bool> prototype_hides;  ///< per prototype: not all that it shows is visible to all rays
   std::size_t spheres = 0, sphere_file_bytes = 0;
   ErrorList* errors = nullptr;  ///< where errors are gathered; null: the first one is thrown
 

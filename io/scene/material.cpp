@@ -110,10 +110,12 @@ struct PhongKeys {
   Material& m;
   PrincipledMaterial rough{};  ///< with `roughness` and `metallic`
   Color filter{1, 1, 1};
+  std::uint32_t filter_texture = kNoId;
 
   void describe(auto& p) {
     p.field("color", Textured<Color>{m.color, m.color_texture}, "of diffuse and ambient light");
-    p.optional("filter", filter, "colour of light that passes through; `color` if left out");
+    p.optional("filter", Textured<Color>{filter, filter_texture},
+               "colour of light that passes through; `color` if left out");
     p.field("specular_color", Textured<Color>{m.specular_color, m.specular_texture},
             "of highlights and mirror reflections");
     for (const PhongNumber& number : kPhongNumbers)
@@ -257,7 +259,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   m.name = name;
   MaterialKeys keys{{m}, {m}};
   const Fields fields = read_described(load, node, keys.kMap, keys);
-  if (fields["filter"]) m.filter = keys.phong.filter;
+  if (fields["filter"]) m.filter = keys.phong.filter, m.filter_texture = keys.phong.filter_texture;
   finish_roughness(fields, keys.phong.rough, m);
   refuse_normal_pattern(load, fields["map_normal"], m.normal_texture);
   if (fields["principled"]) refuse_phong_keys(node, keys.phong);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The readers of the sections of a scene file and of what stands in them. Within io/ only.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -83,7 +84,22 @@ std::string schema_of(Schema& schema, const Range& range, const Camera::Focus& f
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings& caustics);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
 
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, TextureIndex& texture);
+std::string schema_of(Schema& schema, const Range& range, const TextureIndex& texture);
+
 // ---- What is read by hand, each with what it may be.
+
+/// A map that is a texture; its index into Scene::textures.
+std::uint32_t read_texture(SceneLoad& load, const YamlNode& node);
+std::string texture_schema(Schema& schema);
+/// The pattern of this name, if there is one.
+std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node);
+/// What the value of each pattern may be: what(info, schema) with the ShapeInfo of its kind.
+void visit_pattern_schemas(Schema& schema,
+                           const std::function<void(const ShapeInfo&, const std::string&)>& what);
+/// Throws Error at `place` if the patterns in a pattern are too many or too deep. Notes how many there are,
+/// for the texture of this index.
+void check_nesting(SceneLoad& load, std::uint32_t texture, const Location& place);
 
 Affine read_transform(SceneLoad& load, const YamlNode& node);
 /// The keys of a motion: at least one, of ascending times and regular transforms.

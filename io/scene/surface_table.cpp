@@ -36,6 +36,7 @@ std::string allowed(const Range&, const std::vector<Monomial>&) {
 std::string allowed(const Range&, const FunctionTape&) { return "[expression](#values) in x, y and z"; }
 std::string allowed(const Range&, const SolidBox&) { return "`{min, max}`, two points"; }
 std::string allowed(const Range&, const ClipBox& box) { return '`' + written(box) + '`'; }
+std::string allowed(const Range&, const TextureIndex&) { return "[texture](#textures)"; }
 std::string allowed(const Range&, const ByHand& value) { return value.type; }
 template <class T>
 std::string allowed(const Range&, const ChoiceOf<T>& choice) {

@@ -1,4 +1,4 @@
-/// \file The textures of scene files: images, patterns, and attributes of meshes.
+/// \file The textures of scene files: images, patterns (pattern.cpp), and attributes of meshes.
 
 #include <fmt/format.h>
 
@@ -16,9 +16,6 @@
 
 namespace oktett {
 namespace {
-
-/// Most colours of a pattern.
-constexpr std::uint32_t kMostColors = 64;
 
 /// [u, v] or [u, v, w], and for a scale also one number for all axes.
 struct Layout {
@@ -41,37 +38,6 @@ std::string schema_of(Schema&, const Range&, const Layout& layout) {
   if (layout.single_number) forms.insert(forms.begin(), Schema::number(kAnyNumber));
   return Schema::any_of(forms);
 }
-
-/// A map with an inverse, which is what is kept.
-struct InverseOf {
-  Affine& inverse;
-};
-
-void read_value(SceneLoad& load, const YamlNode& node, const Range&, InverseOf& map) {
-  const Affine to_object = read_transform(load, node);
-  if (!to_object.is_invertible())
-    throw Error(node.where(), "expected a map with an inverse, found a singular one");
-  map.inverse = to_object.inverse();
-}
-
-std::string schema_of(Schema& schema, const Range& range, const InverseOf&) {
-  return schema_of(schema, range, Affine{});
-}
-
-/// A pattern with what all patterns have.
-template <class P>
-struct PatternKeys {
-  P pattern;
-  PatternTexture texture;
-
-  void describe(auto& p) {
-    pattern.describe(p);
-    p.optional("colors", texture.colors, whole(1, kMostColors),
-               "in equal steps; black and white if left out");
-    p.optional("transform", InverseOf{texture.to_pattern},
-               "from the space of the pattern to that of the object");
-  }
-};
 
 /// What a texture has besides its pattern or image.
 struct TexelKeys {
@@ -127,19 +93,6 @@ struct ImageKeys {
   }
 };
 
-/// The pattern of this name, if there is one.
-std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node) {
-  std::optional<PatternTexture> texture;
-  visit_patterns([&]<class P>(P pattern) {
-    if (name != P::kShapeInfo.key) return;
-    PatternKeys<P> keys{pattern, {}};
-    read_described(load, node, P::kShapeInfo.key, keys);
-    texture = std::move(keys.texture);
-    texture->pattern = keys.pattern;
-  });
-  return texture;
-}
-
 /// The index of the texture, which is added if it is new; `place`: where it is named.
 std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const Location& place) {
   const std::uint32_t index = load.textures.add(texture);
@@ -156,6 +109,8 @@ std::string attribute_name(SceneLoad& load, const YamlNode& node) {
   if (name.empty()) throw Error(node.where(), "expected the name of an attribute of meshes, found nothing");
   return name;
 }
+
+}  // namespace
 
 std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   Texture texture;
@@ -190,7 +145,9 @@ std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   if (is_image) image.describe(reader), image.finish();
   if (!texture.attribute.empty()) ChannelKeys{texture.channel}.describe(reader);
   texel.describe(reader);
-  return add_texture(load, texture, place);
+  const std::uint32_t index = add_texture(load, texture, place);
+  if (texture.pattern) check_nesting(load, index, node.where());
+  return index;
 }
 
 std::string texture_schema(Schema& schema) {
@@ -200,16 +157,13 @@ std::string texture_schema(Schema& schema) {
     ImageKeys{usual}.describe(map);
     map.one_of({"file"});
     map.add_one_of("attribute", kAttributeMeaning, Schema::text());
-    visit_patterns([&]<class P>(const P& pattern) {
-      const ShapeInfo& s = P::kShapeInfo;
-      map.add_one_of(s.key, s.meaning, schema.map(s.key, PatternKeys<P>{pattern, {}}));
+    visit_pattern_schemas(schema, [&](const ShapeInfo& info, const std::string& text) {
+      map.add_one_of(info.key, info.meaning, text);
     });
     TexelKeys{usual.gain, usual.base}.describe(map);
     return map.text();
   });
 }
-
-}  // namespace
 
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, FilePath& file) {
   file.path = load.values.existing_file(node);
@@ -224,6 +178,14 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, TextureMap&
   map.texture = read_texture(load, node);
 }
 std::string schema_of(Schema& schema, const Range&, const TextureMap&) {
+  return Schema::any_of({Schema::file(), texture_schema(schema)});
+}
+
+// Within patterns.
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, TextureIndex& texture) {
+  texture.index = read_texture(load, node);
+}
+std::string schema_of(Schema& schema, const Range&, const TextureIndex&) {
   return Schema::any_of({Schema::file(), texture_schema(schema)});
 }
 

@@ -46,7 +46,7 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   InteractionBlock::put(c.throughput, k, throughput);
   InteractionBlock::put(c.color, k, p.color);
   InteractionBlock::put(c.specular_color, k, p.specular_color);
-  InteractionBlock::put(c.filter, k, p.material->filter.value_or(p.color));
+  InteractionBlock::put(c.filter, k, p.filter.value_or(p.color));
   InteractionBlock::put(c.ng, k, p.ng);
   InteractionBlock::put(c.ns, k, p.ns);
   c.diffuse[k] = p.values.diffuse;
