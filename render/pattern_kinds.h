@@ -92,7 +92,7 @@ OKTETT_PLAIN_PATTERN(CylindricalPattern, "cylindrical",
                      "from 1 on the y axis to 0 at the distance 1 and beyond");
 OKTETT_PLAIN_PATTERN(DentsPattern, "dents", "few high places of noise");
 
-/// The colouring of the plane by z -> z^n + c, or by the maps of magnetism of Peitgen and Richter (1986).
+/// The colouring of the plane by z -> z^n + c, or by the maps of magnetism after Peitgen (1986).
 struct FractalPattern {
   enum class Set : std::uint8_t { mandel, julia };
   enum class Formula : std::uint8_t { power, magnet1, magnet2 };

@@ -134,8 +134,8 @@ std::string pattern_table() {
   for (const DescribedSurface& pattern : described_patterns()) {
     table += fmt::format("| **`{}`** | | | | {} |\n", pattern.surface.key, pattern.surface.meaning);
     for (const DescribedParameter& p : pattern.parameters)
-      table +=
-          fmt::format("| | `{}` | {} | `{}` | {} |\n", p.parameter.key, p.text, p.usual, p.parameter.meaning);
+      table += fmt::format("| | `{}` | {} | {} | {} |\n", p.parameter.key, p.text,
+                           p.usual == "required" ? p.usual : '`' + p.usual + '`', p.parameter.meaning);
   }
   return table;
 }
