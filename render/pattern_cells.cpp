@@ -14,8 +14,6 @@
 namespace oktett {
 namespace {
 
-double fraction(double x) { return x - std::floor(x); }
-
 /// The random point of a cube of edge 1.
 Vec3d cell_point(std::int64_t x, std::int64_t y, std::int64_t z) {
   const std::uint64_t a = lattice_bits(x, y, z), b = mix_bits(a + kGoldenBits), c = mix_bits(b + kGoldenBits);
@@ -74,7 +72,7 @@ NearestPoints nearest_points(const Metric& metric, const Vec3d& p) {
             if (std::max({std::abs(i), std::abs(j), std::abs(k)}) < 2) continue;
             Vec3d gap;
             for (int a = 0; a < 3; ++a) {
-              const double at = fraction(p[a]), s = static_cast<double>(step[a]);
+              const double at = fraction_of(p[a]), s = static_cast<double>(step[a]);
               gap[a] = s > 0 ? s - at : s < 0 ? at - s - 1 : 0;
             }
             if (metric.sum(gap) >= nearest.sums[2]) continue;
@@ -92,7 +90,7 @@ double remainder_of(double x, double size) { return x - std::floor(x / size) * s
 
 double raw_value(const AgatePattern& a, const Vec3d& p, const PatternFrame& frame) {
   const double noise = a.folding == 0 ? 0 : a.folding * value_turbulence(frame.turbulence, p);
-  const double sine = portable::sin(2 * std::numbers::pi * fraction(1.3 * noise + 1.1 * p.z));
+  const double sine = portable::sin(2 * std::numbers::pi * fraction_of(1.3 * noise + 1.1 * p.z));
   return portable::pow(std::max(0.5 + 0.5 * sine, 0.0), 0.77);
 }
 

@@ -16,17 +16,15 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-double fraction(double x) { return x - std::floor(x); }
-
 /// From 1 at 0 to 0 at 1 and beyond.
 double down(double distance) { return std::max(1 - distance, 0.0); }
 
 double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
 
-double sine_wave(double x) { return 0.5 + 0.5 * portable::sin(kTurn * fraction(x)); }
+double sine_wave(double x) { return 0.5 + 0.5 * portable::sin(kTurn * fraction_of(x)); }
 
 double triangle(double x) {
-  const double part = fraction(x);
+  const double part = fraction_of(x);
   return part > 0.5 ? 2 - 2 * part : 2 * part;
 }
 
@@ -86,15 +84,15 @@ double raw_value(const LeopardPattern&, const Vec3d& p, const PatternFrame&) {
 
 double raw_value(const LinearPattern& l, const Vec3d& p, const PatternFrame&) {
   const double along = dot(p, l.direction) / length(l.direction);
-  return along > 1 ? fraction(along) : along;
+  return along > 1 ? fraction_of(along) : along;
 }
 
-double raw_value(const OnionPattern&, const Vec3d& p, const PatternFrame&) { return fraction(length(p)); }
+double raw_value(const OnionPattern&, const Vec3d& p, const PatternFrame&) { return fraction_of(length(p)); }
 
 double raw_value(const PlanarPattern&, const Vec3d& p, const PatternFrame&) { return down(std::abs(p.y)); }
 
 double raw_value(const QuiltedPattern& q, const Vec3d& p, const PatternFrame&) {
-  const Vec3d from_middle{fraction(p.x) - 0.5, fraction(p.y) - 0.5, fraction(p.z) - 0.5};
+  const Vec3d from_middle{fraction_of(p.x) - 0.5, fraction_of(p.y) - 0.5, fraction_of(p.z) - 0.5};
   // A Bezier curve of the distance that runs to 1 at 1, times the sum of the axes; 1 would be the value where
   // both the distance and the axes are 1 / sqrt(3) times 3 / 2.
   const double t = length(from_middle), s = 1 - t;
@@ -109,8 +107,8 @@ double raw_value(const RingsPattern&, const Vec3d& p, const PatternFrame& frame)
   PatternTurbulence whole = t;
   whole.amount = {1, 1, 1};
   const Vec3d q = displaced(whole, p);
-  const double x = p.x + portable::sin(kTurn * fraction(q.x * t.amount.x));
-  const double y = p.y + portable::sin(kTurn * fraction(q.y * t.amount.y));
+  const double x = p.x + portable::sin(kTurn * fraction_of(q.x * t.amount.x));
+  const double y = p.y + portable::sin(kTurn * fraction_of(q.y * t.amount.y));
   return hypotenuse(x, y);
 }
 

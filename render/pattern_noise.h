@@ -1,11 +1,15 @@
 #pragma once
 /// \file The noise of patterns: random numbers of the integer lattice, and Perlin's noise between them.
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/vec3.h"
 
 namespace oktett {
+
+/// What `x` is above the integer below it.
+inline double fraction_of(double x) { return x - std::floor(x); }
 
 /// The integer below `x` as a number for hashing; 0 where it does not fit.
 std::int64_t cell_of(double x);

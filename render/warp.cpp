@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kPeriod = 1.00001;
 
-double fraction(double x) { return x - std::floor(x); }
-
 Vec3d warped_by(const RepeatWarp& r, Vec3d p) {
   const int axis = r.width.x != 0 ? 0 : r.width.y != 0 ? 1 : 2;
   const double width = r.width[axis], copy = std::floor(p[axis] / width);
@@ -38,7 +36,7 @@ Vec3d warped_by(const TurbulenceWarp& t, const Vec3d& p) { return displaced(t.tu
 
 /// The part of a turn from the first axis towards the second, in [0, 1).
 double turn(double second, double first) {
-  return fraction(portable::atan2(second, first) / (2 * std::numbers::pi));
+  return fraction_of(portable::atan2(second, first) / (2 * std::numbers::pi));
 }
 
 Vec3d warped_by(const MappingWarp& m, const Vec3d& p) {

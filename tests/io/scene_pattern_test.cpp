@@ -41,7 +41,9 @@ TEST_F(ScenePattern, EachKindIsRead) {
     if constexpr (std::is_same_v<P, TexturePattern>) keys = "of: {noise: }";
     const PatternTexture read = pattern(std::string(P::kShapeInfo.key) + ": {" + keys + "}");
     EXPECT_TRUE(std::holds_alternative<P>(read.pattern)) << P::kShapeInfo.key;
-    if (keys.empty()) EXPECT_EQ(read.pattern, Pattern(usual)) << P::kShapeInfo.key;
+    if (keys.empty()) {
+      EXPECT_EQ(read.pattern, Pattern(usual)) << P::kShapeInfo.key;
+    }
     EXPECT_EQ(read.wave, Wave{});
     ++kinds;
   });

@@ -324,7 +324,8 @@ TEST(PatternKinds, CrackleIsMadeOfDistancesFromAllPoints) {
                   std::min(1.0, 0.1 * distances[0] + 0.1 * distances[1] + 0.2 * distances[2]), 1e-9);
       // POV-Ray: the second distances 0.7958 and 0.4928 become 0.8568 and 0.6255 for metric 3 and offset 0.5.
       const double moved = std::pow(std::pow(distances[1], metric) + std::pow(0.5, metric), 1 / metric);
-      EXPECT_NEAR(pattern_value(CracklePattern{{0, 0.2, 0}, metric, 0.5}, p), std::min(1.0, 0.2 * moved), 1e-9);
+      EXPECT_NEAR(pattern_value(CracklePattern{{0, 0.2, 0}, metric, 0.5}, p), std::min(1.0, 0.2 * moved),
+                  1e-9);
       EXPECT_EQ(pattern_value(CracklePattern{{-1, 1, 0}, metric, 0, true}, p), noise(first));
     }
 }
