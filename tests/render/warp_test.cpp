@@ -313,24 +313,23 @@ TEST(Slopes, AreGradientsOfSmoothPatterns) {
 // Where a value jumps there is no slope, and no step of it.
 TEST(Slopes, OfJumpsAreZero) {
   Random random(5);
+  PatternTexture texture;
   const Pattern broken[] = {BrickPattern{{1, 1, 1}, 0.2}, CellsPattern{}, CubicPattern{}, HexagonPattern{}};
-  for (const Pattern& pattern : broken)
-    for (int i = 0; i < 2000; ++i) {
-      PatternTexture texture;
-      texture.pattern = pattern;
+  for (const Pattern& pattern : broken) {
+    texture.pattern = pattern;
+    for (int i = 0; i < 2000; ++i)
       EXPECT_EQ(pattern_slope(texture, random_point(random, 1.0)), (Vec3d{0, 0, 0})) << pattern.index();
-    }
+  }
   for (const Pattern& pattern : {Pattern(LinearPattern{}), Pattern(OnionPattern{}), Pattern(AngularPattern{}),
-                                 Pattern(CracklePattern{{-1, 1, 0}, 2, 0, true})})
+                                 Pattern(CracklePattern{{-1, 1, 0}, 2, 0, true})}) {
+    texture.pattern = pattern;
     for (int i = 0; i < 5000; ++i) {
-      PatternTexture texture;
-      texture.pattern = pattern;
       const Vec3d p = random_point(random, 3);
       if (p.x * p.x + p.z * p.z < 0.25) continue;
       EXPECT_LT(length(pattern_slope(texture, p)), 1.8) << pattern.index();
     }
+  }
   // A continuous wave has no jump where its period ends.
-  PatternTexture texture;
   texture.pattern = LinearPattern{};
   texture.wave.shape = WaveShape::triangle;
   EXPECT_NEAR(pattern_slope(texture, {1.25, 0, 0}).x, 2, 1e-6);
