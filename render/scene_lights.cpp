@@ -240,7 +240,7 @@ class EmitterCollector {
   void add(const PlacedGeometry& p, const DiskShape& shape) {
     const Material* m = material(p);
     const double scale = p.to_world.uniform_scale();
-    if (m == nullptr || m->emission_texture != kNoId || scale == 0) return;
+    if (m == nullptr || m->emission_texture != kNoId || scale == 0 || shape.inner_radius > 0) return;
     const Vec3d normal = p.to_world.inverse().normal_by_inverse(shape.normal);
     add_emitter(
         p, 0, *m,
@@ -250,7 +250,8 @@ class EmitterCollector {
 
   void add(const PlacedGeometry& p, const PolygonShape& shape) {
     const Material* m = material(p);
-    if (m == nullptr || m->emission_texture != kNoId || shape.vertices.size() != 4) return;
+    if (m == nullptr || m->emission_texture != kNoId || shape.vertices.size() != 4 || !shape.holes.empty())
+      return;
     const auto corner = [&](std::size_t i) { return p.to_world.point(shape.vertices[i]); };
     const Vec3d u = corner(1) - corner(0), v = corner(3) - corner(0), rest = corner(2) - corner(1) - v;
     const double size = std::max(length(u), length(v));

@@ -39,22 +39,34 @@ bool folds_back(const Point2& a, const Point2& b, const Point2& c) {
   return turn(a, b, c) == 0 && along < 0;
 }
 
+using Ring = std::vector<Point2>;
+
 /// Sweeps over the edges by their least x, so that only edges that overlap in x are compared.
-bool is_simple(const std::vector<Point2>& points) {
-  const std::size_t n = points.size();
-  const auto end_of = [&](std::size_t edge) -> const Point2& { return points[edge + 1 == n ? 0 : edge + 1]; };
-  const auto lo = [&](std::size_t edge) { return std::min(points[edge].x, end_of(edge).x); };
-  const auto hi = [&](std::size_t edge) { return std::max(points[edge].x, end_of(edge).x); };
-  for (std::size_t i = 0; i < n; ++i)
-    if (folds_back(points[i], end_of(i), points[(i + 2) % n])) return false;
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return lo(a) < lo(b); });
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t l = k + 1; l < n && lo(order[l]) <= hi(order[k]); ++l) {
-      const std::size_t a = order[k], b = order[l];
-      const bool are_neighbours = (a + 1) % n == b || (b + 1) % n == a;
-      if (!are_neighbours && segments_touch(points[a], end_of(a), points[b], end_of(b))) return false;
+bool is_simple(const std::vector<Ring>& rings) {
+  struct Edge {
+    const Ring* ring;
+    std::size_t number;
+    Point2 a, b;
+    double lo() const { return std::min(a.x, b.x); }
+    double hi() const { return std::max(a.x, b.x); }
+    bool is_beside(const Edge& e) const {
+      const std::size_t n = ring->size();
+      return ring == e.ring && ((number + 1) % n == e.number || (e.number + 1) % n == number);
+    }
+  };
+  std::vector<Edge> edges;
+  for (const Ring& ring : rings) {
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (folds_back(ring[i], ring[(i + 1) % n], ring[(i + 2) % n])) return false;
+      edges.push_back({&ring, i, ring[i], ring[(i + 1) % n]});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.lo() < b.lo(); });
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    for (std::size_t l = k + 1; l < edges.size() && edges[l].lo() <= edges[k].hi(); ++l) {
+      const Edge &a = edges[k], &b = edges[l];
+      if (!a.is_beside(b) && segments_touch(a.a, a.b, b.a, b.b)) return false;
     }
   return true;
 }
@@ -78,9 +90,19 @@ std::string why_degenerate(const PolygonShape& polygon) {
   for (const Vec3d& p : v)
     if (std::abs(dot(unit, p - centre)) > 1e-5 * size) return "the polygon is not planar";
   const int axis = dominant_axis(unit);
-  std::vector<Point2> points;
-  for (const Vec3d& p : v) points.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
-  return is_simple(points) ? "" : "the polygon is not simple: its edges touch each other";
+  std::vector<Ring> rings;
+  const auto add = [&](const std::vector<Vec3d>& ring) {
+    Ring& points = rings.emplace_back();
+    for (const Vec3d& p : ring) points.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
+  };
+  add(v);
+  for (const auto& [hole] : polygon.holes) {
+    if (hole.size() < 3) return "a hole of the polygon has no area";
+    for (const Vec3d& p : hole)
+      if (std::abs(dot(unit, p - centre)) > 1e-5 * size) return "a hole is not in the plane of the polygon";
+    add(hole);
+  }
+  return is_simple(rings) ? "" : "the polygon is not simple: its edges touch each other";
 }
 
 std::string why_degenerate(const Affine& transform) {
@@ -92,9 +114,12 @@ std::string why_degenerate(const Affine& transform) {
 }
 
 void remove_repeated_vertices(PolygonShape& polygon) {
-  std::vector<Vec3d>& v = polygon.vertices;
-  v.erase(std::unique(v.begin(), v.end()), v.end());
-  while (v.size() > 1 && v.front() == v.back()) v.pop_back();
+  const auto clean = [](std::vector<Vec3d>& v) {
+    v.erase(std::unique(v.begin(), v.end()), v.end());
+    while (v.size() > 1 && v.front() == v.back()) v.pop_back();
+  };
+  clean(polygon.vertices);
+  for (PolygonHole& hole : polygon.holes) clean(hole.vertices);
 }
 
 }  // namespace oktett

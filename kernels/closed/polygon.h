@@ -16,13 +16,13 @@ struct Polygon {
 
   struct Pool {
     Column<double> nx, ny, nz, offset;         ///< plane with unit normal
-    Column<std::uint32_t> axis, begin, count;  ///< dropped axis; range of projected vertices
-    Column<double> u, v;                       ///< projected vertices of all polygons
+    Column<std::uint32_t> axis, begin, count;  ///< dropped axis; range of projected edges
+    Column<double> u[2], v[2];                 ///< lower and upper ends of the edges of all polygons
     Column<std::uint32_t> item;
     std::vector<Box> boxes;
     std::size_t size() const { return item.size(); }
     std::size_t bytes() const {
-      return nx.bytes() * 4 + axis.bytes() * 4 + u.bytes() * 2 + boxes.size() * sizeof(Box);
+      return nx.bytes() * 4 + axis.bytes() * 4 + u[0].bytes() * 4 + boxes.size() * sizeof(Box);
     }
   };
 
@@ -31,8 +31,7 @@ struct Polygon {
   struct Lanes {
     Vec3<D> n;
     D offset;
-    const double* u;
-    const double* v;
+    const double *u[2], *v[2];
     std::uint32_t axis, count;
   };
 
@@ -46,12 +45,23 @@ struct Polygon {
     return n;
   }
 
+  /// Calls f(a, b) for each edge, of the holes, too.
+  template <class F>
+  static void each_edge(const PolygonShape& s, F&& f) {
+    const auto ring = [&](const std::vector<Vec3d>& points) {
+      for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) f(points[j], points[i]);
+    };
+    ring(s.vertices);
+    for (const PolygonHole& hole : s.holes) ring(hole.vertices);
+  }
   static bool is_empty(const PolygonShape& s) {
     return s.vertices.size() < 3 || !(length(area_normal(s.vertices)) > 0);
   }
   /// A mirror reverses the order of the vertices, but the front stays the front.
   static PolygonShape moved(PolygonShape s, const Affine& m) {
     for (Vec3d& v : s.vertices) v = m.point(v);
+    for (PolygonHole& hole : s.holes)
+      for (Vec3d& v : hole.vertices) v = m.point(v);
     if (m.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
     return s;
   }
@@ -66,12 +76,22 @@ struct Polygon {
     p.offset.push_back(dot(n, centroid));
     const int axis = dominant_axis(n);
     p.axis.push_back(static_cast<std::uint32_t>(axis));
-    p.begin.push_back(static_cast<std::uint32_t>(p.u.size()));
-    p.count.push_back(static_cast<std::uint32_t>(s.vertices.size()));
+    p.begin.push_back(static_cast<std::uint32_t>(p.u[0].size()));
     p.item.push_back(item);
     Box box;
+    std::uint32_t count = 0;
+    each_edge(s, [&](const Vec3d& a, const Vec3d& b) {
+      // An edge is always evaluated from its lower to its upper end, so that neighbours which share it agree
+      // to the last bit.
+      const bool upward = a[(axis + 2) % 3] < b[(axis + 2) % 3];
+      for (int end = 0; end < 2; ++end) {
+        const Vec3d& q = upward == (end == 1) ? b : a;
+        p.u[end].push_back(q[(axis + 1) % 3]), p.v[end].push_back(q[(axis + 2) % 3]);
+      }
+      ++count;
+    });
+    p.count.push_back(count);
     for (const Vec3d& q : s.vertices) {
-      p.u.push_back(q[(axis + 1) % 3]), p.v.push_back(q[(axis + 2) % 3]);
       // Rounding may move vertices off the common plane, on which the hits lie.
       const Vec3d pad = Vec3d{1, 1, 1} * (std::abs(dot(n, q - centroid)) + 0x1p-45 * max_component(abs(q)));
       box.grow(round_down(q - pad)), box.grow(round_up(q + pad));
@@ -84,8 +104,8 @@ struct Polygon {
   OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
     return {{D(p.nx[i]), D(p.ny[i]), D(p.nz[i])},
             D(p.offset[i]),
-            &p.u[p.begin[i]],
-            &p.v[p.begin[i]],
+            {&p.u[0][p.begin[i]], &p.u[1][p.begin[i]]},
+            {&p.v[0][p.begin[i]], &p.v[1][p.begin[i]]},
             p.axis[i],
             p.count[i]};
   }
@@ -103,14 +123,9 @@ struct Polygon {
     const D pu = s.axis == 0 ? p.y : s.axis == 1 ? p.z : p.x;
     const D pv = s.axis == 0 ? p.z : s.axis == 1 ? p.x : p.y;
     auto inside = meets & ~meets;
-    for (std::uint32_t i = 0, j = s.count - 1; i < s.count; j = i++) {
-      const D ui(s.u[i]), vi(s.v[i]), uj(s.u[j]), vj(s.v[j]);
-      const auto straddles = ((vi > pv) & ~(vj > pv)) | (~(vi > pv) & (vj > pv));
-      // The edge is always evaluated from its lower to its upper end, so that neighbours which share it agree
-      // to the last bit.
-      const auto upward = vi < vj;
-      const D u0 = select(upward, ui, uj), v0 = select(upward, vi, vj);
-      const D u1 = select(upward, uj, ui), v1 = select(upward, vj, vi);
+    for (std::uint32_t i = 0; i < s.count; ++i) {
+      const D u0(s.u[0][i]), v0(s.v[0][i]), u1(s.u[1][i]), v1(s.v[1][i]);
+      const auto straddles = ~(v0 > pv) & (v1 > pv);
       const auto left = pu < u0 + (pv - v0) / (v1 - v0) * (u1 - u0);
       const auto crossing = straddles & left;
       inside = (inside & ~crossing) | (~inside & crossing);
@@ -130,17 +145,15 @@ struct Polygon {
     const int i = (dominant_axis(n) + 1) % 3, j = (dominant_axis(n) + 2) % 3;
     SurfaceNearest best;
     bool inside = false;
-    Vec3d a = to_world.point(s.vertices[count - 1]);
-    for (const Vec3d& vertex : s.vertices) {
-      const Vec3d b = to_world.point(vertex);
+    each_edge(s, [&](const Vec3d& from, const Vec3d& to) {
+      const Vec3d a = to_world.point(from), b = to_world.point(to);
       const auto edge =
           closest_on_edge(oktett::broadcast<D>(p), oktett::broadcast<D>(a), oktett::broadcast<D>(b));
       best.keep_nearer(p, {only_lane(edge.d2), a + (b - a) * only_lane(edge.t), n});
       if ((a[j] > foot.point[j]) != (b[j] > foot.point[j]) &&
           foot.point[i] < a[i] + (foot.point[j] - a[j]) / (b[j] - a[j]) * (b[i] - a[i]))
         inside = !inside;
-      a = b;
-    }
+    });
     return inside ? foot : best;
   }
 

@@ -87,11 +87,12 @@ struct PlaneShape {
 /// A flat disk.
 struct DiskShape {
   Vec3d center{0, 0, 0};
-  Vec3d normal{0, 1, 0};  ///< of any length but zero
-  double radius = 1;      ///< > 0
+  Vec3d normal{0, 1, 0};    ///< of any length but zero
+  double radius = 1;        ///< > 0
+  double inner_radius = 0;  ///< of a hole in the middle; < radius
 
   static constexpr bool kFlat = true;
-  static constexpr ShapeInfo kShapeInfo{"disk", "a flat round plate"};
+  static constexpr ShapeInfo kShapeInfo{"disk", "a flat round plate, perhaps with a hole in the middle"};
   OKTETT_INLINE Box bounds() const {
     const Vec3d n = normalize(normal);
     Vec3d reach;
@@ -102,6 +103,8 @@ struct DiskShape {
     p.field("center", center, kCoordinate, "the centre");
     p.field("normal", normal, "of any length");
     p.field("radius", radius, kLength, "distance of the edge from the centre");
+    p.field("inner_radius", inner_radius, kLength, "that of the edge of the hole");
+    p.check(inner_radius < radius || radius == 0, "inner_radius", "the hole must be smaller than the disk");
     p.nothing_if(normal == Vec3d{0, 0, 0}, "the normal is zero");
     p.nothing_if(radius == 0, "the radius is zero");
   }
@@ -127,10 +130,16 @@ struct BoxShape {
 /// Most vertices of a polygon: testing that it is simple takes quadratic time in the worst case.
 inline constexpr std::uint32_t kMaxPolygonVertices = 4096;
 
+/// The outline of a hole.
+struct PolygonHole {
+  std::vector<Vec3d> vertices;
+};
+
 /// A flat polygon, convex or not, whose edges do not cross. Its front is the side from which the vertices run
 /// counter-clockwise.
 struct PolygonShape {
-  std::vector<Vec3d> vertices;  ///< at least three, in one plane
+  std::vector<Vec3d> vertices;          ///< at least three, in one plane
+  std::vector<PolygonHole> holes = {};  ///< likewise, in that plane, in any order
 
   static constexpr bool kFlat = true;
   static constexpr ShapeInfo kShapeInfo{
@@ -140,6 +149,8 @@ struct PolygonShape {
   }
   void describe(auto& p) {
     p.required("vertices", vertices, whole(3, kMaxPolygonVertices), "counter-clockwise seen from its front");
+    p.optional("holes", holes, whole(0, kMaxPolygonVertices),
+               "polygons in the same plane that are cut out; what is in two of them is not");
   }
 };
 

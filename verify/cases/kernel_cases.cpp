@@ -102,8 +102,9 @@ Targets make_sphere(CaseRandom& r, const Frame& f, KernelCases& cases, std::size
 Targets make_disk(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
   const Vec3d c = r.vector() * f.scale + f.offset, n = normalize(r.vector());
   const double radius = (0.05 + r.unit()) * f.scale;
-  put(cases, i, {c.x, c.y, c.z, n.x, n.y, n.z, radius});
-  const Vec3d rim = perpendicular(n, r) * radius;
+  const double hole = r.bits() % 2 == 0 ? 0 : radius * r.unit();
+  put(cases, i, {c.x, c.y, c.z, n.x, n.y, n.z, radius, hole});
+  const Vec3d rim = perpendicular(n, r) * (hole > 0 && r.bits() % 2 == 0 ? hole : radius);
   return {c + rim * (1.4 * r.unit()), c, c + rim, n, rim};
 }
 

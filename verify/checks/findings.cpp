@@ -48,7 +48,7 @@ void add_shape(KernelId id, const KernelCases& cases, std::vector<Object>& objec
     case KernelId::plane:
       return objects.push_back(object_of(PlaneShape{vec(0), s[3][0]}, {}));
     case KernelId::disk:
-      return objects.push_back(object_of(DiskShape{vec(0), vec(3), s[6][0]}, {}));
+      return objects.push_back(object_of(DiskShape{vec(0), vec(3), s[6][0], s[7][0]}, {}));
     case KernelId::box: {
       double rows[12];
       for (int k = 0; k < 12; ++k) rows[k] = s[k][0];

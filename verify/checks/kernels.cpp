@@ -74,7 +74,7 @@ OracleAnswer ask_oracle(KernelId id, const KernelCases& cases, std::size_t i) {
     case KernelId::plane:
       return oracle_plane(ray, {vec(0), s[3][i]});
     case KernelId::disk:
-      return oracle_disk(ray, {vec(0), vec(3), s[6][i]});
+      return oracle_disk(ray, {vec(0), vec(3), s[6][i], s[7][i]});
     case KernelId::box: {
       double rows[12];
       for (int k = 0; k < 12; ++k) rows[k] = s[k][i];

@@ -135,10 +135,11 @@ OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk) {
   const Vec q = o + d * t - c;
   const Extended distance = square_root(dot(q, q)),
                  slack = error * norm1(d) + kTolerance * (norm1(c) + norm1(o));
-  if (distance > disk.radius + slack) return {};
+  if (distance > disk.radius + slack || distance < disk.inner_radius - slack) return {};
   const Root root{t, error};
   OracleAnswer answer = first_root(ray, &root, 1);
-  if (answer.verdict == OracleVerdict::hit && distance >= disk.radius - slack)
+  if (answer.verdict == OracleVerdict::hit &&
+      (distance >= disk.radius - slack || distance <= disk.inner_radius + slack))
     answer.verdict = OracleVerdict::undecided;
   return answer;
 }

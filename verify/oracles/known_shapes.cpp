@@ -63,7 +63,8 @@ KnownShape plane(CaseRandom& random) {
 }
 
 KnownShape disk(CaseRandom& random) {
-  const DiskShape s{random.vector() * 0.5, random.vector(), random.magnitude(-1, 0.2)};
+  DiskShape s{random.vector() * 0.5, random.vector(), random.magnitude(-1, 0.2)};
+  if (random.unit() < 0.4) s.inner_radius = s.radius * random.unit();
   KnownShape known{s, {}};
   known.truth.f = [s](const Vec3l& p) {
     const Vec3l n(s.normal);
@@ -71,7 +72,8 @@ KnownShape disk(CaseRandom& random) {
   };
   known.truth.where = [s](const Vec3l& p) {
     const Vec3l d = p - Vec3l(s.center);
-    return std::sqrt(dot(d, d)) - s.radius;
+    const Real away = std::sqrt(dot(d, d));
+    return std::max(away - s.radius, s.inner_radius - (s.inner_radius > 0 ? away : 0));
   };
   known.truth.grow(s.center, s.radius);
   return known;
@@ -88,7 +90,7 @@ KnownShape box(CaseRandom& random) {
 
 /// How far p is outside of the polygon in its plane, negative inside: the distance from the nearest edge. Its
 /// sign is that of the angle by which the edges turn about p.
-Real outside_polygon(const std::vector<Vec3d>& vertices, const Vec3l& normal, const Vec3l& p) {
+Real outside_ring(const std::vector<Vec3d>& vertices, const Vec3l& normal, const Vec3l& p) {
   Real nearest = HUGE_VALL, angle = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Vec3l a = Vec3l(vertices[i]) - p, b = Vec3l(vertices[(i + 1) % vertices.size()]) - p, e = b - a;
@@ -100,7 +102,13 @@ Real outside_polygon(const std::vector<Vec3d>& vertices, const Vec3l& normal, co
   return std::abs(angle) > std::numbers::pi_v<Real> ? -nearest : nearest;
 }
 
-/// A star of points at random distances in a plane.
+Real outside_polygon(const PolygonShape& s, const Vec3l& normal, const Vec3l& p) {
+  Real away = outside_ring(s.vertices, normal, p);
+  for (const PolygonHole& hole : s.holes) away = std::max(away, -outside_ring(hole.vertices, normal, p));
+  return away;
+}
+
+/// A star of points at random distances in a plane, perhaps with a triangular hole.
 KnownShape polygon(CaseRandom& random) {
   PolygonShape s;
   const Affine shift = Affine::translation(random.vector() * 0.5);
@@ -111,13 +119,27 @@ KnownShape polygon(CaseRandom& random) {
     const double radius = count == 3 ? 1 : 0.2 + random.unit();
     s.vertices.push_back(turn.point({radius * std::cos(angle), radius * std::sin(angle), 0}));
   }
+  if (random.unit() < 0.4 && count > 3) {
+    // Within the least distance of an edge from the middle.
+    double least = 1;
+    for (std::size_t i = 0; i < s.vertices.size(); ++i) {
+      const Vec3d a = s.vertices[i], b = s.vertices[(i + 1) % s.vertices.size()], m = turn.point({0, 0, 0});
+      const double t = std::clamp(dot(m - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
+      least = std::min(least, length(a + (b - a) * t - m));
+    }
+    s.holes.resize(1);
+    for (int i = 0; i < 3; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.5 * random.unit()) / 3, radius = 0.9 * least;
+      s.holes[0].vertices.push_back(turn.point({radius * std::cos(angle), radius * std::sin(angle), 0}));
+    }
+  }
   KnownShape known{s, {}};
   const Vec3d at = turn.point({0, 0, 0});
   const Vec3l normal(turn.vector({0, 0, 1}));
   const auto height = [at, normal](const Vec3l& p) { return dot(normal, p - Vec3l(at)); };
   known.truth.f = height;
   known.truth.where = [s, normal, height](const Vec3l& p) {
-    return outside_polygon(s.vertices, normal, p - normal * height(p));
+    return outside_polygon(s, normal, p - normal * height(p));
   };
   known.truth.grow(at, 1.2);
   return known;
