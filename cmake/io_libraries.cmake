@@ -37,3 +37,4 @@ target_link_libraries(oktett_images PRIVATE OpenImageIO::OpenImageIO)
 
 include(cmake/volumes.cmake)
 include(cmake/threemf.cmake)
+include(cmake/fonts.cmake)

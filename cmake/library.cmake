@@ -12,7 +12,7 @@ file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp acce
 list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/")
 file(GLOB_RECURSE OKTETT_IO_SOURCES CONFIGURE_DEPENDS io/*.cpp)
 # These belong to libraries of their own: cmake/io_libraries.cmake.
-list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/(image/oiio|volume/openvdb|threemf/lib3mf)/")
+list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/(image/oiio|volume/openvdb|threemf/lib3mf|font/freetype)/")
 
 # The static library, too, may become part of a shared one, such as the Python module. Its functions are never replaced by
 # others of the same name, so they may be inlined as in a program.

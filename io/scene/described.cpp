@@ -137,6 +137,16 @@ bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point) {
   return true;
 }
 
+bool read_item(SceneLoad& load, const YamlNode& node, PolygonHole& hole) {
+  std::vector<Vec3d>& points = hole.vertices;
+  for (const YamlNode* item : list_items(node, "points"))
+    attempt(*item, [&] { points.push_back(load.values.vector(*item)); });
+  if (points.size() < 3 || points.size() > kMaxPolygonVertices)
+    throw Error(node.where(),
+                fmt::format("expected 3 to {} points, found {}", kMaxPolygonVertices, points.size()));
+  return true;
+}
+
 bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane) {
   double p[4];
   load.values.numbers(node, p);
@@ -149,6 +159,29 @@ bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point) {
   double p[2];
   load.values.numbers(node, p);
   point = {p[0], p[1]};
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, SweptSphere& sphere) {
+  double p[4];
+  load.values.numbers(node, p);
+  if (p[3] < 0) throw Error(node.where(), "the radius of a sphere must not be negative");
+  sphere = {{p[0], p[1], p[2]}, p[3]};
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, PlaneOutline& outline) {
+  const auto items = list_items(node, "outlines");
+  if (items.empty() || items.size() > kMaxOutlinePoints)
+    throw Error(node.where(),
+                fmt::format("expected 1 to {} points, found {}", kMaxOutlinePoints, items.size()));
+  for (const YamlNode* item : items) {
+    attempt(*item, [&] {
+      double p[2];
+      load.values.numbers(*item, p);
+      outline.push_back({p[0], p[1]});
+    });
+  }
   return true;
 }
 

@@ -76,9 +76,12 @@ FunctionTape read_function(SceneLoad& load, const YamlNode& node);
 
 // Items of lists. Each returns whether the item is kept; it warns of those that are not.
 bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point);
+bool read_item(SceneLoad& load, const YamlNode& node, PolygonHole& hole);
 bool read_item(SceneLoad& load, const YamlNode& node, Color& color);
 bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane);
 bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
+bool read_item(SceneLoad& load, const YamlNode& node, PlaneOutline& outline);
+bool read_item(SceneLoad& load, const YamlNode& node, SweptSphere& sphere);
 bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
 bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
 bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);

@@ -7,7 +7,9 @@
 
 #include "kernels/exact/lathe.h"
 #include "kernels/exact/polyhedron.h"
+#include "kernels/exact/prism.h"
 #include "kernels/exact/revolution.h"
+#include "kernels/exact/sphere_sweep.h"
 #include "kernels/exact/superquadric.h"
 #include "kernels/fractals/julia.h"
 #include "kernels/fractals/terrain.h"
@@ -92,6 +94,31 @@ MaybeForm finish(const ShapeNode& at, TurnedProfile& profile) {
     throw Error(
         node.where(),
         fmt::format("the profile crosses the axis: at height {:.6g} the radius is negative", *height));
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, PrismShape& shape) {
+  using Curve = PrismShape::Curve;
+  const auto places = list_items(at.fields.require("outlines"), "outlines");
+  const std::size_t least = shape.curve == Curve::linear ? 3 : shape.curve == Curve::quadratic ? 3 : 4;
+  for (std::size_t i = 0; i < shape.outlines.size(); ++i) {
+    const std::size_t n = shape.outlines[i].size();
+    if (shape.curve == Curve::bezier && n % 3 != 1)
+      throw Error(places[i]->where(),
+                  fmt::format("expected 4, 7, 10, … points, 3 more for each piece; found {}", n));
+    if (n < least)
+      throw Error(places[i]->where(), fmt::format("expected at least {} points, found {}", least, n));
+  }
+  Prism::Pool pool;
+  Prism::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("the outlines surround nothing");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, SphereSweepShape& shape) {
+  SphereSweep::Pool pool;
+  SphereSweep::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("all radii are zero");
   return shape;
 }
 

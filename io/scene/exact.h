@@ -29,6 +29,9 @@ struct ShapeNode {
 std::optional<ExactForm> finish(const ShapeNode& at, PolyhedronShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, SuperquadricShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, TurnedProfile& profile);
+std::optional<ExactForm> finish(const ShapeNode& at, PrismShape& shape);
+std::optional<ExactForm> finish(const ShapeNode& at, TextKeys& keys);
+std::optional<ExactForm> finish(const ShapeNode& at, SphereSweepShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, MetaballsShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, BlobTreeShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, JuliaShape& shape);

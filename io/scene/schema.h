@@ -119,8 +119,13 @@ inline std::string schema_of(Schema&, const Range& counts, std::span<const Vec3d
 }
 inline std::string schema_of(Schema&, const Range&, const std::vector<Monomial>&) { return Schema::text(); }
 inline std::string schema_of(Schema&, const Range&, const FunctionTape&) { return Schema::text(); }
+inline std::string schema_of(Schema&, const Range&, const PolygonHole&) {
+  return Schema::list(Schema::vector(), whole(3, kMaxPolygonVertices));
+}
 inline std::string schema_of(Schema&, const Range&, const HalfSpace&) { return Schema::numbers(4); }
 inline std::string schema_of(Schema&, const Range&, const ProfilePoint&) { return Schema::numbers(2); }
+inline std::string schema_of(Schema&, const Range&, const SweptSphere&) { return Schema::numbers(4); }
+inline std::string schema_of(Schema&, const Range&, const FlatPoint&) { return Schema::numbers(2); }
 std::string schema_of(Schema& schema, const Range& range, const Affine& value);
 std::string schema_of(Schema& schema, const Range& range, const BlobSource& value);
 std::string schema_of(Schema& schema, const Range& range, const ByHand& value);

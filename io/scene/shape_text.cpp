@@ -43,6 +43,7 @@ template <class T>
 bool is_given(const T&, std::string_view) {
   return true;
 }
+bool is_given(const PolygonShape& s, std::string_view key) { return key != "holes" || !s.holes.empty(); }
 bool is_given(const QuadricShape& s, std::string_view key) { return key != "clip" || s.clipped; }
 bool is_given(const BlobShape& s, std::string_view key) { return key != "bounds" || s.bounded; }
 bool is_given(const MeshShape& s, std::string_view key) {
@@ -85,6 +86,11 @@ class ParameterWriter : public ParameterVisitor<ParameterWriter<Shape>> {
     return text(std::array{h.normal.x, h.normal.y, h.normal.z, h.offset});
   }
   static std::string text(const ProfilePoint& p) { return text(std::array{p.radius, p.height}); }
+  static std::string text(const SweptSphere& s) {
+    return text(std::array{s.center.x, s.center.y, s.center.z, s.radius});
+  }
+  static std::string text(const PolygonHole& hole) { return text(hole.vertices); }
+  static std::string text(const FlatPoint& p) { return text(std::array{p.x, p.z}); }
   static std::string text(const Affine& map) { return transform_text(map); }
   static std::string text(const BlobSource& source) { return source_text(source); }
   static std::string text(const MetaBall& ball) {
@@ -210,6 +216,8 @@ std::string form_text(const T& form, SideFiles& files, NormalMethod normals) {
     return described_text("revolution", profile, files, normals);
   } else if constexpr (std::is_same_v<T, LatheShape>) {
     return described_text("revolution", TurnedProfile{form.points, Kind::bezier, form.open}, files, normals);
+  } else if constexpr (std::is_same_v<T, PrismShape>) {
+    return described_text("prism", form, files, normals);
   } else if constexpr (std::is_same_v<T, QuadricShape>) {
     return described_text("quadric", form, files, normals);
   } else if constexpr (std::is_same_v<T, SuperquadricShape>) {

@@ -50,8 +50,11 @@ std::string allowed(const Range&, const ChoiceOf<T>& choice) {
 
 /// The items of a list.
 std::string items(const Vec3d&) { return "points"; }
+std::string items(const PolygonHole&) { return "lists of points"; }
 std::string items(const HalfSpace&) { return "`[nx, ny, nz, d]`"; }
 std::string items(const ProfilePoint&) { return "`[radius, height]`"; }
+std::string items(const SweptSphere&) { return "`[x, y, z, radius]`"; }
+std::string items(const PlaneOutline&) { return "lists of points, 2 numbers each"; }
 std::string items(const Affine&) { return "[transforms](#transforms)"; }
 std::string items(const BlobSource& source) {
   return fmt::format(

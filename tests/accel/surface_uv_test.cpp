@@ -155,5 +155,33 @@ TEST(SurfaceUv, OfRevolutionsRunsAroundYAndUp) {
       "revolution");
 }
 
+TEST(SurfaceUv, OfPrismsRunsAlongTheOutlineAndUp) {
+  PrismShape s;
+  s.outlines = {{{-0.8, -0.8}, {0.8, -0.8}, {0.8, 0.8}, {-0.8, 0.8}}};
+  s.from = -0.7, s.to = 0.9;
+  const auto on_side = [](double x, double z) {
+    const double a = std::abs(x), b = std::abs(z);
+    if (b > a) return z < 0 ? (x + 0.8) / 6.4 : 0.5 + (0.8 - x) / 6.4;
+    return x > 0 ? 0.25 + (z + 0.8) / 6.4 : 0.75 + (0.8 - z) / 6.4;
+  };
+  expect_uv(
+      s,
+      [&](const Vec3d& p) {
+        const bool flat = std::abs(p.y + 0.7) < 1e-5 || std::abs(p.y - 0.9) < 1e-5;
+        if (flat) return Uv{(p.x + 0.8) / 1.6, (p.z + 0.8) / 1.6};
+        return Uv{on_side(p.x, p.z), (p.y + 0.7) / 1.6};
+      },
+      "prism");
+  // A pyramid: up each side u stays the same.
+  s.sweep = PrismShape::Sweep::conic, s.from = 0, s.to = 1;
+  expect_uv(
+      s,
+      [&](const Vec3d& p) {
+        if (std::abs(p.y - 1) < 1e-5) return Uv{(p.x + 0.8) / 1.6, (p.z + 0.8) / 1.6};
+        return Uv{on_side(p.x / p.y, p.z / p.y), p.y};
+      },
+      "pyramid");
+}
+
 }  // namespace
 }  // namespace oktett::surface_uv_test

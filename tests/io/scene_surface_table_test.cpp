@@ -26,22 +26,27 @@ std::string usual_words(const DescribedParameter& p) {
 
 /// A value for each parameter whose default is no value.
 std::string sample(const std::string& surface, const DescribedParameter& p) {
-  static const Values kSamples = {{"mesh.file", "a.obj"},
-                                  {"mesh.stroke_width", "0.1"},
-                                  {"metaballs.file", "balls.txt"},
-                                  {"metaballs.balls", "[{}]"},
-                                  {"metaballs.elements", "[{point: [0, 0, 0]}]"},
-                                  {"height_field.function", "x * z"},
-                                  {"polygon.vertices", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]"},
-                                  {"polyhedron.planes",
-                                   "[[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], "
-                                   "[0, 0, -1, 1]]"},
-                                  {"polynomial.equation", "x^2 + y^2 + z^2 = 1/2"},
-                                  {"implicit.function", "x^2 + y^2 + z^2 - 1/2"},
-                                  {"blob.sources", "[{point: [0, 0, 0]}]"},
-                                  {"revolution.points", "[[1, -1], [1, 0], [1, 1], [1, 2]]"},
-                                  {"ifs.maps", "[{scale: 0.5}]"},
-                                  {"height_field.base", "-2"}};
+  static const Values kSamples = {
+      {"mesh.file", "a.obj"},
+      {"mesh.stroke_width", "0.1"},
+      {"metaballs.file", "balls.txt"},
+      {"metaballs.balls", "[{}]"},
+      {"metaballs.elements", "[{point: [0, 0, 0]}]"},
+      {"height_field.function", "x * z"},
+      {"polygon.vertices", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]"},
+      {"polyhedron.planes",
+       "[[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], "
+       "[0, 0, -1, 1]]"},
+      {"polynomial.equation", "x^2 + y^2 + z^2 = 1/2"},
+      {"implicit.function", "x^2 + y^2 + z^2 - 1/2"},
+      {"blob.sources", "[{point: [0, 0, 0]}]"},
+      {"revolution.points", "[[1, -1], [1, 0], [1, 1], [1, 2]]"},
+      {"sphere_sweep.spheres", "[[0, 0, 0, 1], [1, 0, 0, 1], [2, 0, 0, 1], [3, 0, 0, 1]]"},
+      {"text.font", "font.ttf"},
+      {"text.text", "a"},
+      {"prism.outlines", "[[[0, 0], [1, 0], [0, 1], [0, 0]]]"},
+      {"ifs.maps", "[{scale: 0.5}]"},
+      {"height_field.base", "-2"}};
   if (const auto found = kSamples.find(surface + "." + p.parameter.key); found != kSamples.end())
     return found->second;
   const std::string key = p.parameter.key;

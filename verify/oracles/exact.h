@@ -52,6 +52,8 @@ ExactOracle oracle_of(const PolyhedronShape& shape);
 ExactOracle oracle_of(const QuadricShape& shape);
 ExactOracle oracle_of(const PolynomialShape& shape);
 ExactOracle oracle_of(const RevolutionShape& shape);
+ExactOracle oracle_of(const PrismShape& shape);
+ExactOracle oracle_of(const SphereSweepShape& shape);
 ExactOracle oracle_of(const SuperquadricShape& shape);
 ExactOracle oracle_of(const MetaballsShape& shape);
 

@@ -27,6 +27,10 @@ struct ExactCase {
 std::vector<ExactCase> quadric_cases();
 /// Polynomials, blobs of inverse squares and surfaces of revolution.
 std::vector<ExactCase> polynomial_cases();
+/// Prisms.
+std::vector<ExactCase> prism_cases();
+/// Sweeps of spheres.
+std::vector<ExactCase> sweep_cases();
 /// Superquadrics and ratioquadrics.
 std::vector<ExactCase> superquadric_cases();
 /// Metaballs and blob trees.
