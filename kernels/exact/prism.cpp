@@ -297,9 +297,14 @@ SurfaceNearest Prism::closest(const Pool& pool, std::size_t i, const Affine& to_
   const Affine to_own = to_world.inverse();
   const Vec3d p = to_own.point(world);
   SurfaceNearest best;
+  const bool within = !e.open && inside(pool, i, p);
   const auto keep = [&](const Vec3d& at, const Vec3d& normal) {
     const Vec3d there = to_world.point(at), away = world - there;
-    best.keep_nearer(world, {dot(away, away), there, normalize(to_own.normal_by_inverse(normal))});
+    Vec3d n = normalize(to_own.normal_by_inverse(normal));
+    // At edges the direction to the point takes the place of a normal that does not tell where the point is.
+    const double size = length(away), facing = within ? -dot(away, n) : dot(away, n);
+    if (!e.open && size > 0 && facing < 0.5 * size) n = away * ((within ? -1 : 1) / size);
+    best.keep_nearer(world, {dot(away, away), there, n});
   };
   if (!e.open) {
     for (int end = 0; end < 2; ++end) {
@@ -309,7 +314,6 @@ SurfaceNearest Prism::closest(const Pool& pool, std::size_t i, const Affine& to_
       if (scale != 0 && e.outlines.inside({p.x / scale, p.z / scale})) keep({p.x, y, p.z}, up);
     }
   }
-  // The normal of a side points to where the point is, or away from there if that is inside.
   const auto keep_side = [&](const OutlinePiece& piece, double s, const Vec3d& at) {
     const FlatPoint right = right_normal(piece, s), q = piece.at(s).at;
     Vec3d n{right.x, e.conic ? -(q.x * right.x + q.z * right.z) : 0, right.z};

@@ -142,7 +142,7 @@ TEST(Prisms, ManyPieces) {
 
 /// The nearest point is no farther than any of many points of the surface, and lies on it.
 TEST(Prisms, NearestPoints) {
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
     CaseRandom random(seed);
     const auto names = exact_oracle_names();
     for (std::size_t form = 0; form < names.size(); ++form) {
@@ -162,11 +162,15 @@ TEST(Prisms, NearestPoints) {
         for (const Vec3f& q : surface) EXPECT_LE(nearest.distance, length(q - p) * (1 + 1e-5f) + 1e-5f);
         const Vec3f away = p - nearest.point;
         EXPECT_NEAR(length(away), nearest.distance, 1e-5f);
-        // It is on the surface: moved along its normal it is inside and outside.
-        const Vec3d n(nearest.normal), at(nearest.point);
-        const auto f = [&](double step) { return oracle.f(Vec3l(at + n * step)); };
-        if (!oracle.where) {
-          EXPECT_LT(std::abs(f(0)), 2e-5) << names[form] << ' ' << seed;
+        // Nothing of the surface is nearer: what is nearer is all inside or all outside.
+        if (oracle.where) continue;
+        const bool within = inside(*accel, p);
+        for (int k = 0; k < 40; ++k) {
+          const Vec3f q = p + Vec3f(normalize(random.vector()) * (0.9999 * random.unit() * nearest.distance));
+          EXPECT_EQ(inside(*accel, q), within) << names[form] << ' ' << seed;
+        }
+        if (nearest.distance > 1e-3f) {
+          EXPECT_EQ(dot(away, nearest.normal) < 0, within) << names[form] << ' ' << seed;
         }
       }
     }
