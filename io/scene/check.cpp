@@ -9,8 +9,8 @@
 #include "io/obj/obj.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
-#include "io/scene/utf8.h"
 #include "io/text/files.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 namespace {

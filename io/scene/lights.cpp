@@ -14,7 +14,7 @@
 #include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 #include "render/light_groups.h"
 #include "render/moments.h"
 
