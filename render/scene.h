@@ -287,8 +287,8 @@ struct PointLight {
   Vec3d down{0, -1, 0};  ///< of any length but zero
 };
 
-/// A point that emits light into a cone, which falls off as 1/r^2. From the inner to the outer angle it fades
-/// smoothly.
+/// A point that emits light into a cone, which falls off as 1/r^2 unless `falloff` is not set. From the inner
+/// to the outer angle it fades smoothly.
 struct SpotLight {
   Vec3d position;
   Vec3d direction{0, -1, 0};  ///< along the middle of the cone, of any length but zero
@@ -298,6 +298,7 @@ struct SpotLight {
   /// Instead of the angles: multiplies the intensity by direction, its axis along `direction`. May be null.
   std::shared_ptr<const LightProfile> profile = nullptr;
   double rotation = 0;  ///< of the profile: degrees about its axis
+  bool falloff = true;
 };
 
 /// Parallel light that travels along `direction`.
