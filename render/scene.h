@@ -144,6 +144,7 @@ struct Film {
     p.optional("filter_radius", filter_radius, kFilterRadii, "in pixels; by filter if it is left out");
     p.choice("tone", tone.kind, kToneKinds, "tone curve of 8-bit pictures");
     p.field("exposure", tone.exposure, kExposures, "of 8-bit pictures, in stops");
+    p.field("gamma", tone.gamma, kGammas, "of 8-bit pictures: the power of light that is shown");
     p.field("cryptomatte", cryptomatte, "mattes of objects and materials in EXR files");
   }
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/pov/read_pov.h"
 #include "io/yaml/utf8.h"
 
 namespace oktett::pov {
@@ -76,9 +77,20 @@ std::string Arguments::text(std::string_view what) {
 
 std::vector<double> Arguments::all_numbers() {
   std::vector<double> all;
-  while (is_numbers()) {
-    const auto& n = std::get<Numbers>(take().value);
-    all.insert(all.end(), n.v.begin(), n.v.begin() + n.size);
+  while (true) {
+    if (is_numbers()) {
+      const auto& n = std::get<Numbers>(take().value);
+      all.insert(all.end(), n.v.begin(), n.v.begin() + n.size);
+    } else if (const Block* const long_vector = peek_block();
+               long_vector != nullptr && long_vector->keyword == "<") {
+      // More numbers than a vector has.
+      Arguments inner(context_, *long_vector);
+      const std::vector<double> more = inner.all_numbers();
+      all.insert(all.end(), more.begin(), more.end());
+      take();
+    } else {
+      break;
+    }
   }
   return all;
 }
@@ -204,7 +216,10 @@ std::string find_file(const Context& context, const Place& where, const std::str
   const auto beside = [&](std::size_t file) {
     return (fs::path(context.document.files[file]).parent_path() / name).string();
   };
-  for (const std::string& path : {beside(0), beside(where.file)})
+  std::vector<std::string> places{beside(0), beside(where.file)};
+  for (const std::string& folder : ReadOptions::default_library_folders())
+    places.push_back((fs::path(folder) / name).string());
+  for (const std::string& path : places)
     if (why_unreadable(path).empty()) return fs::absolute(path).lexically_normal().string();
   context.fail(where, quote(name, 1000) + ": " + why_unreadable(beside(0)));
 }

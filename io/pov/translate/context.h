@@ -28,7 +28,7 @@ struct Context {
   /// The sections of the tree.
   Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr;
   std::string mesh_prefix;
-  double gamma = 1;  ///< that colours are decoded with
+  double gamma = 1;  ///< in which light is computed
 
   /// Warns of what is not as POV-Ray has it, once for each `kind`.
   void tell(const std::string& kind, const Place& where, const std::string& message) {

@@ -436,8 +436,8 @@ class MaterialWriter {
     put_highlight(map, f, mean.rgb);
     put_reflection(map, f, mean.rgb, passes, interior);
     if (passes > 0) {
-      const Vec3d through = (decoded(context_, mean.rgb) * mean.filter + Vec3d{1, 1, 1} * mean.transmit) /
-                            (mean.filter + mean.transmit);
+      const Vec3d through =
+          (mean.rgb * mean.filter + Vec3d{1, 1, 1} * mean.transmit) / (mean.filter + mean.transmit);
       put(map, "transparency", passes, -1);
       tree_.put(map, "filter", color_node(tree_, where_, through));
       const double ior = f.ior.value_or(interior.ior);
@@ -458,8 +458,7 @@ class MaterialWriter {
     Vec3d glow = f.emission;
     if (!grey) glow = glow + f.ambient;
     if (!grey || max_component(glow) > 0)
-      tree_.put(map, "emission",
-                color_node(tree_, where_, glow * decoded(context_, mean.rgb) * (1 - passes)));
+      tree_.put(map, "emission", color_node(tree_, where_, glow * mean.rgb * (1 - passes)));
   }
 
   /// POV-Ray's `specular` is a power of the cosine between the normal and the direction halfway to the light,
@@ -481,7 +480,7 @@ class MaterialWriter {
 
   Vec3d tint(double metallic, const Vec3d& rgb) const {
     const double m = std::min(metallic, 1.0);
-    return decoded(context_, rgb) * m + Vec3d{1, 1, 1} * (1 - m);
+    return rgb * m + Vec3d{1, 1, 1} * (1 - m);
   }
 
   void put_reflection(Node map, const Finish& f, const Vec3d& rgb, double passes, const Interior& interior) {
@@ -508,11 +507,11 @@ class MaterialWriter {
 
   Node color(const Pigment& p, double left, const Affine& to_texture) {
     const PovColor mean = mean_of(p);
-    if (p.pattern.empty()) return color_node(tree_, where_, decoded(context_, p.solid.rgb) * left);
+    if (p.pattern.empty()) return color_node(tree_, where_, p.solid.rgb * left);
     if (Node pattern = pattern_node(p, left, to_texture)) return pattern;
     context_.tell("pattern " + p.pattern, p.pattern_place,
                   fmt::format("pattern '{}' has no meaning here; one colour stands for it", p.pattern));
-    return color_node(tree_, where_, decoded(context_, mean.rgb) * left);
+    return color_node(tree_, where_, mean.rgb * left);
   }
 
   Node pattern_node(const Pigment& p, double left, const Affine& to_texture) {
@@ -524,8 +523,7 @@ class MaterialWriter {
                     "what passes through a pattern is the same everywhere");
     const auto colors = [&](const std::vector<PovColor>& list) {
       const Node node = tree_.list(where_);
-      for (const PovColor& c : list)
-        Tree::push(node, color_node(tree_, where_, decoded(context_, c.rgb) * left));
+      for (const PovColor& c : list) Tree::push(node, color_node(tree_, where_, c.rgb * left));
       return node;
     };
     const Node keys = tree_.map(where_);
@@ -591,8 +589,11 @@ class MaterialWriter {
 
   Node image_node(const Pigment& p) {
     if (!p.uv || p.image.empty()) return nullptr;
-    return tree_.map(where_, "file",
-                     tree_.text(p.pattern_place, find_file(context_, p.pattern_place, p.image)));
+    const Node image =
+        tree_.map(where_, "file", tree_.text(p.pattern_place, find_file(context_, p.pattern_place, p.image)));
+    // Its numbers are those of the scene's gamma then.
+    if (context_.gamma > 1.6) tree_.put(image, "color_space", tree_.word(where_, "linear"));
+    return image;
   }
 
   Context& context_;
@@ -601,13 +602,6 @@ class MaterialWriter {
 };
 
 }  // namespace
-
-Vec3d decoded(const Context& context, const Vec3d& rgb) {
-  Vec3d out;
-  for (int k = 0; k < 3; ++k)
-    out[k] = context.gamma == 1 ? std::max(0.0, rgb[k]) : std::pow(std::max(0.0, rgb[k]), context.gamma);
-  return out;
-}
 
 Node color_node(Tree& tree, const Place& where, const Vec3d& rgb) {
   // Single precision is what a colour has; its shortest text reads better.

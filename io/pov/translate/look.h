@@ -42,8 +42,6 @@ class Wardrobe {
   std::set<std::string> taken_;
 };
 
-/// A colour as it is used: decoded by the scene's gamma.
-Vec3d decoded(const Context& context, const Vec3d& rgb);
 Node color_node(Tree& tree, const Place& where, const Vec3d& rgb);
 
 /// A colour that stands for a whole pigment: the mean of its map.

@@ -105,7 +105,7 @@ bool contains(const Loop& loop, const PlainPoint& p) {
 }
 
 /// Joins a hole to an outline by a bridge to the right of the hole's rightmost corner.
-void bridge(Loop& outline, const Loop& hole) {
+void bridge(Loop& outline, const Loop& hole, const std::vector<const Loop*>& holes) {
   std::size_t from = 0;
   for (std::size_t i = 1; i < hole.size(); ++i)
     if (hole[i].x > hole[from].x) from = i;
@@ -127,7 +127,8 @@ void bridge(Loop& outline, const Loop& hole) {
   };
   std::size_t to = order[0];
   for (const std::size_t i : order)
-    if (!crosses(outline, outline[i]) && !crosses(hole, outline[i])) {
+    if (!crosses(outline, outline[i]) &&
+        std::ranges::none_of(holes, [&](const Loop* other) { return crosses(*other, outline[i]); })) {
       to = i;
       break;
     }
@@ -158,7 +159,7 @@ void fill(std::vector<Loop> loops, const std::function<void(PlainPoint, PlainPoi
       return -x;
     };
     std::ranges::stable_sort(holes, {}, rightmost);
-    for (const Loop* hole : holes) bridge(outline, *hole);
+    for (const Loop* hole : holes) bridge(outline, *hole, holes);
     std::vector<Vec3f> points;
     for (const PlainPoint& p : outline) points.push_back(Vec3f(Vec3d{p.x, p.y, 0}));
     const auto triangles = triangulator.run(points);
@@ -434,8 +435,7 @@ std::vector<Outline> outlines_of(const std::vector<PlainPoint>& p, std::string_v
           const PlainPoint& d = next + 1 < p.size() ? p[next + 1] : c;
           add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 1, d, -1.0 / 6, b, 1.0 / 6), c, outline);
         } else {
-          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 5.0 / 6, b, 1.0 / 3, a, -1.0 / 6), c,
-                     outline);
+          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 0.5, b, 2.0 / 3, a, -1.0 / 6), c, outline);
         }
       }
     }

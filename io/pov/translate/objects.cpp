@@ -274,8 +274,8 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
     own.to_texture = own.to_texture * shape.first.all;
     const Node node = tree.map(block.where, shape.key, shape.value);
     tree.put(node, "material",
-             hidden_ ? wardrobe_.invisible(block.where)
-                     : wardrobe_.material(own, outer.default_texture, block.where));
+             hidden_ || shape.invisible ? wardrobe_.invisible(block.where)
+                                        : wardrobe_.material(own, outer.default_texture, block.where));
     Moves all = shape.first;
     if (single && m.clips.empty()) all.add(m.moves);
     if (const Node transform = moves_node(tree, block.where, all)) tree.put(node, "transform", transform);

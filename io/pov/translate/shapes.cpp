@@ -7,10 +7,12 @@
 #include <cmath>
 #include <utility>
 
+#include "io/image/heights.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/meshes.h"
 #include "kernels/exact/lathe.h"
 #include "kernels/exact/revolution.h"
+#include "kernels/heights/height_grid.h"
 
 namespace oktett::pov {
 namespace {
@@ -253,8 +255,12 @@ class ShapeMaker {
       } else if (const Block* const block = a_.peek_block(); block != nullptr && is_component(*block)) {
         a_.take();
         any |= add_component(*block, elements);
-      } else if (a_.is_numbers()) {
-        a_.take();
+      } else if (a_.take_word("component")) {
+        // The order of old scenes.
+        const double strength = a_.number("a strength"), radius = std::abs(a_.number("a radius"));
+        any |= strength > 0;
+        Tree::push(elements, element_node(where_, tree_.vector(where_, a_.vector("a point")), "point",
+                                          strength, radius));
       } else {
         break;
       }
@@ -266,7 +272,14 @@ class ShapeMaker {
   }
 
   static bool is_component(const Block& block) {
-    return block.keyword == "sphere" || block.keyword == "cylinder" || block.keyword == "component";
+    return block.keyword == "sphere" || block.keyword == "cylinder";
+  }
+
+  Node element_node(const Place& where, Node skeleton, std::string_view key, double strength, double radius) {
+    const Node element = tree_.map(where, key, skeleton);
+    tree_.put(element, "weight", tree_.number(where, strength));
+    tree_.put(element, "radius", tree_.number(where, radius));
+    return element;
   }
 
   /// Returns whether its strength is positive.
@@ -275,16 +288,11 @@ class ShapeMaker {
     const bool is_segment = block.keyword == "cylinder";
     Vec3d from, to;
     double radius = 0, strength = 0;
-    if (block.keyword == "component") {
-      // The old order: strength, radius, centre.
-      strength = a.number("a strength"), radius = a.number("a radius"), from = a.vector("a point");
-    } else {
-      from = a.vector("a point");
-      if (is_segment) to = a.vector("a point");
-      radius = a.number("a radius");
-      a.take_word("strength");
-      strength = a.number("a strength");
-    }
+    from = a.vector("a point");
+    if (is_segment) to = a.vector("a point");
+    radius = a.number("a radius");
+    a.take_word("strength");
+    strength = a.number("a strength");
     Moves moves;
     while (!a.at_end())
       if (!take_moves(context_, a, moves)) {
@@ -294,7 +302,6 @@ class ShapeMaker {
         a.take();
       }
     const Place& w = block.where;
-    const Node element = tree_.map(w);
     const auto& m = moves.all.m;
     const Vec3d scale{std::hypot(m[0][0], m[1][0], m[2][0]), std::hypot(m[0][1], m[1][1], m[2][1]),
                       std::hypot(m[0][2], m[1][2], m[2][2])};
@@ -304,17 +311,13 @@ class ShapeMaker {
                     "components of blobs that are stretched along one axis are scaled evenly");
     const double size = even ? scale.x : std::cbrt(scale.x * scale.y * scale.z);
     radius = std::abs(radius) * size;
+    const Node at = tree_.vector(w, moves.all.point(from));
+    Node ends = at;
     if (is_segment) {
-      const Node ends = tree_.map(w);
-      tree_.put(ends, "from", tree_.vector(w, moves.all.point(from)));
+      ends = tree_.map(w, "from", at);
       tree_.put(ends, "to", tree_.vector(w, moves.all.point(to)));
-      tree_.put(element, "segment", ends);
-    } else {
-      tree_.put(element, "point", tree_.vector(w, moves.all.point(from)));
     }
-    tree_.put(element, "weight", tree_.number(w, strength)),
-        tree_.put(element, "radius", tree_.number(w, radius));
-    Tree::push(elements, element);
+    Tree::push(elements, element_node(w, ends, is_segment ? "segment" : "point", strength, radius));
     return strength > 0;
   }
 
@@ -345,6 +348,11 @@ class ShapeMaker {
   std::optional<Shapes> sor() {
     std::vector<ProfilePoint> points = profile();
     if (points.size() < 4) return left_out("a surface of revolution needs 4 points");
+    // Points at the ends that only give directions may stand at the height of their neighbours.
+    const std::size_t last = points.size() - 1;
+    const double nudge = 1e-9 * std::abs(points[last - 1].height - points[1].height);
+    if (points[0].height == points[1].height) points[0].height -= nudge;
+    if (points[last].height == points[last - 1].height) points[last].height += nudge;
     for (std::size_t i = 1; i < points.size(); ++i)
       if (!(points[i - 1].height < points[i].height)) return left_out("the heights of a sor ascend");
     const bool open = is_open();
@@ -404,7 +412,7 @@ class ShapeMaker {
       if (quadratic) {
         const ProfilePoint& a = p[i - 1];
         out[0].push_back(mix(b, 1, c, 1.0 / 6, a, -1.0 / 6));
-        out[0].push_back(mix(c, 5.0 / 6, b, 1.0 / 3, a, -1.0 / 6));
+        out[0].push_back(mix(c, 0.5, b, 2.0 / 3, a, -1.0 / 6));
       } else {
         if (b.radius == c.radius && b.height == c.height) continue;
         out[0].push_back(mix(b, 2.0 / 3, c, 1.0 / 3, b, 0)),
@@ -452,18 +460,21 @@ class ShapeMaker {
     if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
       return left_out("what contains the isosurface has no volume");
     const bool open = is_open();
+    // The sphere at which an open surface ends is not seen.
+    const bool cut = radius > 0 && open;
+    if (cut) {
+      const Vec3d room{radius * 0.01, radius * 0.01, radius * 0.01};
+      lo = lo - room, hi = hi + room;
+    }
     const Node keys = map();
     tree_.put(keys, "function", tree_.text(where_, *text));
-    if (radius > 0 && open)
-      context_.tell("open isosurface", where_,
-                    "an open isosurface is contained by the box around its sphere");
     put_bounds(keys, lo, hi);
-    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
-    Shapes shapes = one("implicit", keys, !open);
-    if (radius > 0 && !open) {
+    if (open && !cut) tree_.put(keys, "open", tree_.flag(where_, true));
+    Shapes shapes = one("implicit", keys, !open || cut);
+    if (radius > 0) {
       const Node ball = map();
       tree_.put(ball, "center", vector(center)), tree_.put(ball, "radius", number(radius));
-      shapes.parts.push_back({"sphere", ball, nullptr, {}});
+      shapes.parts.push_back({"sphere", ball, nullptr, {}, cut});
       shapes.meet = true;
     }
     return shapes;
@@ -545,10 +556,16 @@ class ShapeMaker {
       }
     }
     if (path.empty()) return left_out("of height fields only those of image files are read");
+    path = find_file(context_, at, path);
+    try {
+      read_heights(path, kMaxHeightSide, kMaxHeightSamples);
+    } catch (const Error& error) {
+      return left_out(error.what());
+    }
     if (smooth)
       context_.tell("smooth height field", where_, "height fields are triangles without smooth normals");
     const Node keys = map();
-    tree_.put(keys, "file", tree_.text(at, find_file(context_, at, path)));
+    tree_.put(keys, "file", tree_.text(at, path));
     tree_.put(keys, "size", vector({1, 1, 1}));
     tree_.put(keys, "interpolation", tree_.word(where_, "triangles"));
     tree_.put(keys, "base", number(-1e-4));

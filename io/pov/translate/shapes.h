@@ -17,6 +17,7 @@ struct Shape {
   Node value = nullptr;
   std::shared_ptr<const Block> texture;  ///< of a part of a mesh; null: that of the object
   Moves first;                           ///< to the space of POV-Ray's object
+  bool invisible = false;                ///< it only cuts others
 };
 
 /// The parts of an object, mostly one.

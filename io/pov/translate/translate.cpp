@@ -17,11 +17,11 @@ const Block* block_of(const Element& statement) {
   return block != nullptr ? block->get() : nullptr;
 }
 
-/// The gamma in which the scene's colours are meant. Scenes of before 3.7 that state none show their numbers
-/// as they are, which screens then decode.
+/// The gamma in which the scene's colours are meant and its light is computed. Scenes of before 3.7 that
+/// state none show their numbers as they are, which screens then decode.
 double gamma_of(const Document& document) {
   constexpr double kScreen = 2.2;
-  double gamma = document.version > 0 && document.version < 3.7 ? kScreen : 1;
+  double gamma = document.version < 3.7 ? kScreen : 1;
   for (const Element& statement : document.statements) {
     const Block* const block = block_of(statement);
     if (block == nullptr || block->keyword != "global_settings") continue;
@@ -35,7 +35,7 @@ double gamma_of(const Document& document) {
         gamma = kScreen;
     }
   }
-  return gamma > 0 && std::isfinite(gamma) ? gamma : 1;
+  return std::isfinite(gamma) ? std::clamp(gamma, 0.1, 10.0) : 1;
 }
 
 /// Statements that stand for themselves.
@@ -85,6 +85,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   const Node film = tree.map(top);
   tree.put(film, "width", tree.number(top, options.width)),
       tree.put(film, "height", tree.number(top, options.height));
+  if (context.gamma != 1) tree.put(film, "gamma", tree.number(top, context.gamma));
   tree.put(root, "film", film);
   const Node integrator = tree.map(s.settings_place);
   tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
@@ -93,7 +94,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(root, "integrator", integrator);
   tree.put(root, "background", color_node(tree, s.background_place, s.background));
   if (!(s.ambient == Vec3d{1, 1, 1}))
-    tree.put(root, "ambient_light", color_node(tree, s.settings_place, decoded(context, s.ambient)));
+    tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
   if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
   tree.put(root, "lights", context.lights);
   if (!context.define->items.empty()) tree.put(root, "define", context.define);

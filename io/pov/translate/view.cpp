@@ -214,7 +214,7 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
   read(read, a);
   const Affine all = to_world * moves.all;
   const Vec3d at = all.point(location), target = all.point(point_at);
-  const Vec3d rgb = decoded(context, color.rgb);
+  const Vec3d rgb = color.rgb;
   if (std::min({color.rgb.x, color.rgb.y, color.rgb.z}) < 0)
     context.tell("negative light", where, "light that takes away light is left out");
   if (shadowless)
@@ -276,7 +276,7 @@ void read_background(Context& context, const Block& block, Surroundings& s) {
   Arguments a(context, block);
   while (!a.at_end()) {
     if (a.is_numbers())
-      s.background = decoded(context, a.color("a colour").rgb), s.background_place = block.where;
+      s.background = a.color("a colour").rgb, s.background_place = block.where;
     else if (const Block* const inner = a.peek_block(); inner != nullptr && inner->keyword == "background")
       read_background(context, *inner, s), a.take();
     else
@@ -294,7 +294,7 @@ void read_sky_sphere(Context& context, const Block& block, Surroundings& s) {
     if (inner->keyword != "pigment") continue;
     if (inner->elements.size() > 1)
       context.tell("sky_sphere", inner->where, "one colour stands for the pattern of the sky");
-    s.background = decoded(context, mean_color(context, *inner).rgb), s.background_place = block.where;
+    s.background = mean_color(context, *inner).rgb, s.background_place = block.where;
   }
 }
 
