@@ -57,6 +57,10 @@ bool Interpreter::take_plain_numbers(std::vector<Element>& elements) {
       at_ = at;
       add(elements, where, value);
       any = true;
+      // Lists of meshes say how long they are. No element takes fewer than two characters.
+      constexpr double least = 64;
+      if (elements.size() == 1 && value.size == 1 && value.v[0] >= least && value.v[0] < static_cast<double>(end - at.p) / 2)
+        elements.reserve(static_cast<std::size_t>(value.v[0]) + 1);
     }
   } catch (const LexError& error) {
     fail(error.where.place(), error.message);
@@ -89,7 +93,7 @@ std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint3
   std::uint32_t inner = 0;
   parse_elements(block->elements, keyword, keyword.kind == Token::Kind::word ? '}' : ']', inner);
   depth = std::max(depth, deeper(inner, keyword.where));
-  block->elements.shrink_to_fit();
+  if (block->elements.capacity() > 2 * block->elements.size()) block->elements.shrink_to_fit();
   return block;
 }
 

@@ -79,7 +79,7 @@ bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
       reach_end(hash.where);
       break;
     case "while"_kw:
-      begin_while(hash.where, at_);
+      begin_while(hash.where);
       break;
     case "for"_kw:
       begin_for(hash.where);
@@ -181,7 +181,13 @@ Reference Interpreter::variable(const Token& name, bool local) {
 
 /// `#declare NAME = value` or `#declare NAME[index] = value`; the `#declare` was read.
 void Interpreter::declare(bool local) {
-  const Token name = take_written();
+  Token name = take_written();
+  if (name.kind == Token::Kind::word && name.name->text == "deprecated" && !next_is('=') && !next_is('[')) {
+    // `deprecated once "why" NAME`: whoever uses the name would be told why not to.
+    if (is_letter(*at_.p)) take_written();
+    if (next_is('"')) take_written();
+    name = take_written();
+  }
   if (name.kind != Token::Kind::word) fail_expected("a name to declare", name);
   if (name.name->keyword != kNoKeyword)
     fail(name.where, "expected a name to declare, found the keyword " + in_quotes(name.name->text));
@@ -390,7 +396,8 @@ void Interpreter::select_case(const Place& where) {
   }
 }
 
-void Interpreter::begin_while(const Place& where, const Cursor& start) {
+void Interpreter::begin_while(const Place& where) {
+  const Cursor start = at_;
   if (!condition()) {
     skip_block(where, false, false);
     return;
@@ -492,16 +499,18 @@ static std::string find_file(const std::string& name, const std::vector<std::str
 
 /// The folder of the file that is being read comes first, then that of the scene.
 static std::vector<std::string> folders_for(const std::string& name, const std::string& reading,
-                                            const std::string& scene, const std::vector<std::string>& library) {
+                                            const std::string& scene, const ReadOptions& options) {
   namespace fs = std::filesystem;
   if (fs::path(name).is_absolute()) return {""};
   std::vector<std::string> folders{fs::path(reading).parent_path().string(), fs::path(scene).parent_path().string()};
-  folders.insert(folders.end(), library.begin(), library.end());
+  // What the scene has written may be included, too.
+  if (!options.file_folder.empty()) folders.push_back(options.file_folder);
+  folders.insert(folders.end(), options.library_folders.begin(), options.library_folders.end());
   return folders;
 }
 
 bool Interpreter::file_exists(const std::string& name) const {
-  return !find_file(name, folders_for(name, at_.source->path, document_.files[0], options_.library_folders)).empty();
+  return !find_file(name, folders_for(name, at_.source->path, document_.files[0], options_)).empty();
 }
 
 void Interpreter::include(const Place& where) {
@@ -509,7 +518,7 @@ void Interpreter::include(const Place& where) {
   const std::string name = parse_string();
   if (next_is(';')) take();
   const std::vector<std::string> folders =
-      folders_for(name, at_.source->path, document_.files[0], options_.library_folders);
+      folders_for(name, at_.source->path, document_.files[0], options_);
   const std::string path = find_file(name, folders);
   if (path.empty())
     fail(where, "cannot include " + in_quotes(name) + ": no such file beside " + in_quotes(at_.source->path) +

@@ -77,7 +77,7 @@ class Interpreter {
   void reach_else(const Place& where);
   void reach_case(const Place& where);
   void reach_end(const Place& where);
-  void begin_while(const Place& where, const Cursor& condition);
+  void begin_while(const Place& where);
   void begin_for(const Place& where);
   void begin_switch(const Place& where);
   void break_out(const Place& where);

@@ -4,7 +4,6 @@
 
 #include "io/pov/interpreter.h"
 #include "io/text/files.h"
-#include "io/text/scan.h"
 
 namespace oktett::pov {
 
@@ -93,7 +92,9 @@ void Interpreter::push_back(const Token& token) { pending_.push_back(token); }
 Token Interpreter::take_written() {
   if (!pending_.empty()) return take();
   try {
-    Token token = lex(at_, names_);
+    Token token;
+    skip_space(at_);
+    lex(at_, names_, token);
     token.where.call = call_;
     return token;
   } catch (const LexError& error) {
@@ -142,7 +143,7 @@ Token Interpreter::fetch() {
     try {
       skip_space(at_);
       start = at_;
-      token = lex(at_, names_);
+      lex(at_, names_, token);
     } catch (const LexError& error) {
       Place where = error.where.place();
       where.call = call_;
@@ -184,7 +185,10 @@ bool Interpreter::leave_frame(Token& token) {
 }
 
 Source& Interpreter::source(const std::string& path, const Place& where) {
-  if (const auto found = source_of_.find(path); found != source_of_.end()) return *found->second;
+  const bool may_change = !options_.file_folder.empty();
+  const auto known = source_of_.find(path);
+  if (known != source_of_.end() && !may_change) return *known->second;
+  const auto file = known != source_of_.end() ? known->second->file : static_cast<std::uint32_t>(document_.files.size());
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path_to_open(path), error);
   const auto check = [&](std::uint64_t bytes) {
@@ -196,14 +200,14 @@ Source& Interpreter::source(const std::string& path, const Place& where) {
   if (!error) check(size);
   std::unique_ptr<Source> source;
   try {
-    source = std::make_unique<Source>(path, static_cast<std::uint32_t>(document_.files.size()));
+    source = std::make_unique<Source>(path, file, may_change);
   } catch (const Error& problem) {
     if (document_.files.empty()) throw;
     fail(where, problem.what());
   }
-  check(source->content.text().size());
-  bytes_ += source->content.text().size();
-  document_.files.push_back(path);
+  check(source->text.size());
+  bytes_ += source->text.size();
+  if (file == document_.files.size()) document_.files.push_back(path);
   sources_.push_back(std::move(source));
   source_of_[path] = sources_.back().get();
   return *sources_.back();
@@ -218,8 +222,7 @@ void Interpreter::enter_file(const std::string& path, const Place& where) {
     fail(where, "more than " + std::to_string(limits_.include_depth) + " files include each other");
   Source& file = source(path, where);
   frames_.push_back({at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_, version_});
-  const std::string_view text = without_byte_order_mark(file.content.text());
-  at_ = {&file, text.data(), text.data(), 1};
+  at_ = {&file, file.text.data(), file.text.data(), 1};
 }
 
 std::uint32_t Interpreter::note_call(const Macro& macro, const Place& where) {
