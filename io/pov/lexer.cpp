@@ -189,6 +189,16 @@ void lex(Cursor& at, Names& names, Token& token) {
   }
 }
 
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t most = 60;
+  std::string result = "'";
+  for (const char c : text.substr(0, most)) {
+    const auto code = static_cast<unsigned char>(c);
+    result += code < 32 || code == 127 ? '?' : c;
+  }
+  return result + (text.size() > most ? "...'" : "'");
+}
+
 std::string describe(const Token& token) {
   switch (token.kind) {
     case Token::Kind::end:
