@@ -128,9 +128,9 @@ bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
       break;
     default: {
       static const std::vector<std::string> known{
-          "break", "case",    "debug", "declare", "default", "else", "elseif", "end",   "error",
-          "fclose", "fopen",  "for",   "if",      "ifdef",   "ifndef", "include", "local", "macro",
-          "range",  "read",   "switch", "undef",  "version", "warning", "while", "write"};
+          "break",  "case",  "debug",  "declare", "default", "else",    "elseif",  "end",   "error",
+          "fclose", "fopen", "for",    "if",      "ifdef",   "ifndef",  "include", "local", "macro",
+          "range",  "read",  "switch", "undef",   "version", "warning", "while",   "write"};
       std::string message = "expected a directive behind '#', found " + describe(word);
       if (word.kind == Token::Kind::word) message += did_you_mean(word.name->text, known);
       fail(word.where, message);
@@ -198,7 +198,8 @@ void Interpreter::declare(bool local) {
   hold_ = {frames_.size(), open_.size(), false};
   Datum value = named(parse_value(), name.name->text);
   // Textures in a row are the layers of one.
-  if (const BlockPtr* first = value.get<BlockPtr>(); first && (*first)->keyword == "texture" && !next_is(';')) {
+  if (const BlockPtr* first = value.get<BlockPtr>();
+      first && (*first)->keyword == "texture" && !next_is(';')) {
     std::shared_ptr<Block> layers;
     while (peek().keyword() == "texture"_kw) {
       const Token keyword = take();
@@ -236,7 +237,8 @@ void Interpreter::undef() {
 
 void Interpreter::define_macro(const Place& where) {
   const Token name = take_written();
-  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword) fail_expected("the name of a macro", name);
+  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
+    fail_expected("the name of a macro", name);
   auto macro = std::make_shared<Macro>();
   macro->name = name.name->text;
   const Token open = take_written();
@@ -245,7 +247,8 @@ void Interpreter::define_macro(const Place& where) {
     Token token = take_written();
     if (token.is(')')) break;
     if (token.is(',')) continue;
-    const bool optional = token.kind == Token::Kind::word && token.name->text == "optional" && !next_is(',') && !next_is(')');
+    const bool optional =
+        token.kind == Token::Kind::word && token.name->text == "optional" && !next_is(',') && !next_is(')');
     if (optional) token = take_written();
     if (token.kind != Token::Kind::word || token.name->keyword != kNoKeyword)
       fail_expected("the name of a parameter of the macro '" + macro->name + "'", token);
@@ -408,7 +411,8 @@ void Interpreter::begin_while(const Place& where) {
 void Interpreter::begin_for(const Place& where) {
   expect('(', "behind #for");
   const Token name = take_written();
-  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword) fail_expected("the name of a counter", name);
+  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
+    fail_expected("the name of a counter", name);
   skip_comma();
   const double first = parse_float();
   skip_comma();
@@ -433,7 +437,8 @@ bool Interpreter::for_goes_on(std::size_t index) {
   const Open& loop = open_[index];
   const Datum* const counter = loop.counter.find();
   const Numbers* const number = counter ? counter->get<Numbers>() : nullptr;
-  if (number == nullptr || number->size != 1) fail(loop.where, "the counter of this loop is no number any more");
+  if (number == nullptr || number->size != 1)
+    fail(loop.where, "the counter of this loop is no number any more");
   return loop.step > 0 ? number->v[0] <= loop.last + kTolerance : number->v[0] >= loop.last - kTolerance;
 }
 
@@ -461,7 +466,8 @@ void Interpreter::reach_end(const Place& where) {
     } else {
       const Datum* const counter = loop.counter.find();
       const Numbers* const number = counter ? counter->get<Numbers>() : nullptr;
-      if (number == nullptr || number->size != 1) fail(loop.where, "the counter of this loop is no number any more");
+      if (number == nullptr || number->size != 1)
+        fail(loop.where, "the counter of this loop is no number any more");
       Datum next;
       next.value = Numbers{{number->v[0] + loop.step}, 1, false};
       store(loop.counter, std::move(next));
@@ -502,7 +508,8 @@ static std::vector<std::string> folders_for(const std::string& name, const std::
                                             const std::string& scene, const ReadOptions& options) {
   namespace fs = std::filesystem;
   if (fs::path(name).is_absolute()) return {""};
-  std::vector<std::string> folders{fs::path(reading).parent_path().string(), fs::path(scene).parent_path().string()};
+  std::vector<std::string> folders{fs::path(reading).parent_path().string(),
+                                   fs::path(scene).parent_path().string()};
   // What the scene has written may be included, too.
   if (!options.file_folder.empty()) folders.push_back(options.file_folder);
   folders.insert(folders.end(), options.library_folders.begin(), options.library_folders.end());
@@ -517,8 +524,7 @@ void Interpreter::include(const Place& where) {
   namespace fs = std::filesystem;
   const std::string name = parse_string();
   if (next_is(';')) take();
-  const std::vector<std::string> folders =
-      folders_for(name, at_.source->path, document_.files[0], options_);
+  const std::vector<std::string> folders = folders_for(name, at_.source->path, document_.files[0], options_);
   const std::string path = find_file(name, folders);
   if (path.empty())
     fail(where, "cannot include " + in_quotes(name) + ": no such file beside " + in_quotes(at_.source->path) +

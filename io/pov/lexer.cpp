@@ -159,7 +159,8 @@ static void lex_string(Cursor& at, Token& token) {
 /// Signs of the language.
 static constexpr std::array<bool, 256> kSigns = [] {
   std::array<bool, 256> result{};
-  for (const char c : std::string_view("#{}[]()<>,;+-*/.=!&|?:")) result[static_cast<unsigned char>(c)] = true;
+  for (const char c : std::string_view("#{}[]()<>,;+-*/.=!&|?:"))
+    result[static_cast<unsigned char>(c)] = true;
   return result;
 }();
 

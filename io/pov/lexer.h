@@ -1,6 +1,6 @@
 #pragma once
-/// \file Words, numbers, strings and signs of POV-Ray's language, read one after the other from a file in memory.
-/// Nothing is kept of what was read: loops and macros read their text again.
+/// \file Words, numbers, strings and signs of POV-Ray's language, read one after the other from a file in
+/// memory. Nothing is kept of what was read: loops and macros read their text again.
 
 #include <cstdint>
 #include <memory>
