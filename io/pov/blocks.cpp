@@ -57,6 +57,11 @@ bool Interpreter::take_plain_numbers(std::vector<Element>& elements) {
       at_ = at;
       add(elements, where, value);
       any = true;
+      // Lists of meshes say how long they are. No element takes fewer than two characters.
+      constexpr double least = 64;
+      if (elements.size() == 1 && value.size == 1 && value.v[0] >= least &&
+          value.v[0] < static_cast<double>(end - at.p) / 2)
+        elements.reserve(static_cast<std::size_t>(value.v[0]) + 1);
     }
   } catch (const LexError& error) {
     fail(error.where.place(), error.message);
@@ -73,7 +78,8 @@ void Interpreter::parse_elements(std::vector<Element>& elements, const Token& op
     if (take_if(',')) continue;
     const Token& next = peek();
     if (next.is(closing)) continue;
-    if (next.kind == Token::Kind::end) fail(opening.where, "this block has no '" + std::string(1, closing) + "'");
+    if (next.kind == Token::Kind::end)
+      fail(opening.where, "this block has no '" + std::string(1, closing) + "'");
     parse_element(elements, depth);
   }
   hold_ = outer;
@@ -89,7 +95,7 @@ std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint3
   std::uint32_t inner = 0;
   parse_elements(block->elements, keyword, keyword.kind == Token::Kind::word ? '}' : ']', inner);
   depth = std::max(depth, deeper(inner, keyword.where));
-  block->elements.shrink_to_fit();
+  if (block->elements.capacity() > 2 * block->elements.size()) block->elements.shrink_to_fit();
   return block;
 }
 
@@ -124,8 +130,7 @@ void Interpreter::parse_element(std::vector<Element>& elements, std::uint32_t& d
       fail_expected("a value or a keyword", token);
     }
     Numbers value = parse_sum();
-    while (value.is_color && add_channel(value)) {
-    }
+    while (value.is_color && add_channel(value)) {}
     add(elements, where, value);
     return;
   }
@@ -172,8 +177,7 @@ void Interpreter::add_value(std::vector<Element>& elements, const Token& token, 
   Datum datum = parse_value();
   depth = std::max(depth, datum.depth);
   if (Numbers* value = std::get_if<Numbers>(&datum.value)) {
-    while (value->is_color && add_channel(*value)) {
-    }
+    while (value->is_color && add_channel(*value)) {}
     add(elements, where, *value);
   } else if (std::string* text = std::get_if<std::string>(&datum.value)) {
     add(elements, where, std::move(*text));
@@ -308,7 +312,8 @@ Datum Interpreter::parse_spline(const Token& keyword) {
     point.value = value.v;
     if (value.size == 1) point.value[1] = value.v[0];
     spline->size = std::max(spline->size, static_cast<int>(value.size));
-    if (++values_ > limits_.values) fail(token.where, "more than " + std::to_string(limits_.values) + " values");
+    if (++values_ > limits_.values)
+      fail(token.where, "more than " + std::to_string(limits_.values) + " values");
     spline->points.push_back(point);
   }
   hold_ = outer;

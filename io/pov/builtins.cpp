@@ -17,7 +17,9 @@ std::optional<ObjectQueries::Hit> ObjectQueries::trace(const Block&, const Point
 std::optional<std::pair<ObjectQueries::Point, ObjectQueries::Point>> ObjectQueries::extent(const Block&) {
   return std::nullopt;
 }
-std::optional<std::array<double, 5>> ObjectQueries::pigment(const Block&, const Point&) { return std::nullopt; }
+std::optional<std::array<double, 5>> ObjectQueries::pigment(const Block&, const Point&) {
+  return std::nullopt;
+}
 std::optional<double> ObjectQueries::pattern(const Block&, const Point&) { return std::nullopt; }
 std::optional<double> ObjectQueries::internal(std::uint32_t, std::span<const double>) { return std::nullopt; }
 std::optional<ObjectQueries::Point> ObjectQueries::turbulence(double, double, int, const Point&) {
@@ -75,7 +77,8 @@ int bounded(double x) {
 std::string formatted(double x, int width, int digits) {
   char format[16] = "%*.*f";
   if (width < 0) std::copy_n("%0*.*f", 7, format);
-  std::string text(static_cast<std::size_t>(std::abs(width)) + static_cast<std::size_t>(std::max(digits, 6)) + 400, '\0');
+  std::string text(
+      static_cast<std::size_t>(std::abs(width)) + static_cast<std::size_t>(std::max(digits, 6)) + 400, '\0');
   const int length = std::snprintf(text.data(), text.size(), format, std::abs(width), digits, x);
   text.resize(static_cast<std::size_t>(length));
   return text;
@@ -98,7 +101,8 @@ double leading_number(const std::string& text) {
 
 /// Days since the start of 2000.
 double days_now() {
-  const auto seconds = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const auto seconds =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   return (seconds - 946684800.0) / 86400;
 }
 
@@ -135,7 +139,8 @@ bool is_string_keyword(Keyword keyword) {
 
 ObjectQueries& Interpreter::queries(const Token& token) {
   if (options_.queries != nullptr) return *options_.queries;
-  fail(token.where, in_quotes(token.name->text) + " is not available here: it needs the objects of the scene");
+  fail(token.where,
+       in_quotes(token.name->text) + " is not available here: it needs the objects of the scene");
 }
 
 void Interpreter::check_length(std::size_t length, const Place& where) {
@@ -152,8 +157,8 @@ BlockPtr Interpreter::parse_object_argument() {
   fail_expected("an object", token);
 }
 
-/// A linear congruential generator modulo 2^32 with the multiplier of Borosh and Niederreiter: the numbers that
-/// POV-Ray 3.7 prints for the same seed.
+/// A linear congruential generator modulo 2^32 with the multiplier of Borosh and Niederreiter: the numbers
+/// that POV-Ray 3.7 prints for the same seed.
 Numbers Interpreter::random_number() {
   const Place where = peek().where;
   const double stream = parse_float();
@@ -207,9 +212,11 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
     if (a.size() < numeric->least || a.size() > numeric->most)
       fail(token.where, in_quotes(name) + " takes " + std::to_string(numeric->least) +
                             (numeric->most > numeric->least ? " or more" : "") +
-                            (numeric->least == 1 ? " value, found " : " values, found ") + std::to_string(a.size()));
+                            (numeric->least == 1 ? " value, found " : " values, found ") +
+                            std::to_string(a.size()));
     if (name == "sqrt" && a[0] < 0) fail(token.where, "the square root of a negative number");
-    if ((name == "ln" || name == "log") && !(a[0] > 0)) fail(token.where, "the logarithm of a number that is not above 0");
+    if ((name == "ln" || name == "log") && !(a[0] > 0))
+      fail(token.where, "the logarithm of a number that is not above 0");
     if ((name == "acos" || name == "asin") && std::abs(a[0]) > 1)
       warn(token.where, in_quotes(name) + " of a number beyond 1, which counts as 1");
     return number(numeric->value(a));
@@ -252,7 +259,8 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
       const Place where = peek().where;
       const double index = next_is(')') ? 1 : parse_float();
       if (!(index >= 1 && index < static_cast<double>(sizes.size()) + 1))
-        fail(where, "the array " + in_quotes(array_name.name->text) + " has " + std::to_string(sizes.size()) + " dimensions");
+        fail(where, "the array " + in_quotes(array_name.name->text) + " has " + std::to_string(sizes.size()) +
+                        " dimensions");
       return close(number(static_cast<double>(sizes[static_cast<std::size_t>(index) - 1])));
     }
     case "file_exists"_kw: {
@@ -311,7 +319,9 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
       // The difference of the first characters that differ.
       std::size_t i = 0;
       while (i < a.size() && i < b.size() && a[i] == b[i]) ++i;
-      const auto code = [i](const std::string& s) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0; };
+      const auto code = [i](const std::string& s) {
+        return i < s.size() ? static_cast<unsigned char>(s[i]) : 0;
+      };
       return close(number(code(a) - code(b)));
     }
     case "strlen"_kw: {
@@ -389,7 +399,8 @@ std::string Interpreter::unescape(const Token& token) {
     if (found != std::string_view::npos) {
       result += to[found];
     } else if (const char* const digits = text.data() + i + 1;
-               c == 'u' && i + 4 < text.size() && std::from_chars(digits, digits + 4, code, 16).ptr == digits + 4) {
+               c == 'u' && i + 4 < text.size() &&
+               std::from_chars(digits, digits + 4, code, 16).ptr == digits + 4) {
       append_utf8(result, code);
       i += 4;
     } else {
@@ -480,10 +491,12 @@ std::optional<std::string> Interpreter::parse_string_call(const Token& token) {
       skip_comma();
       const int count = bounded(parse_float());
       // A start of 0 counts as a part of nothing.
-      if (first < 0 || count < 0 || static_cast<std::size_t>(first) + static_cast<std::size_t>(count) > text.size() + 1)
+      if (first < 0 || count < 0 ||
+          static_cast<std::size_t>(first) + static_cast<std::size_t>(count) > text.size() + 1)
         fail(where, "the part of " + std::to_string(count) + " characters from " + std::to_string(first) +
                         " on is not within the string of " + std::to_string(text.size()));
-      if (first > 0) result = text.substr(static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(count));
+      if (first > 0)
+        result = text.substr(static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(count));
       break;
     }
     default: {  // datetime

@@ -79,7 +79,7 @@ bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
       reach_end(hash.where);
       break;
     case "while"_kw:
-      begin_while(hash.where, at_);
+      begin_while(hash.where);
       break;
     case "for"_kw:
       begin_for(hash.where);
@@ -128,9 +128,9 @@ bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
       break;
     default: {
       static const std::vector<std::string> known{
-          "break", "case",    "debug", "declare", "default", "else", "elseif", "end",   "error",
-          "fclose", "fopen",  "for",   "if",      "ifdef",   "ifndef", "include", "local", "macro",
-          "range",  "read",   "switch", "undef",  "version", "warning", "while", "write"};
+          "break",  "case",  "debug",  "declare", "default", "else",    "elseif",  "end",   "error",
+          "fclose", "fopen", "for",    "if",      "ifdef",   "ifndef",  "include", "local", "macro",
+          "range",  "read",  "switch", "undef",   "version", "warning", "while",   "write"};
       std::string message = "expected a directive behind '#', found " + describe(word);
       if (word.kind == Token::Kind::word) message += did_you_mean(word.name->text, known);
       fail(word.where, message);
@@ -181,7 +181,13 @@ Reference Interpreter::variable(const Token& name, bool local) {
 
 /// `#declare NAME = value` or `#declare NAME[index] = value`; the `#declare` was read.
 void Interpreter::declare(bool local) {
-  const Token name = take_written();
+  Token name = take_written();
+  if (name.kind == Token::Kind::word && name.name->text == "deprecated" && !next_is('=') && !next_is('[')) {
+    // `deprecated once "why" NAME`: whoever uses the name would be told why not to.
+    if (is_letter(*at_.p)) take_written();
+    if (next_is('"')) take_written();
+    name = take_written();
+  }
   if (name.kind != Token::Kind::word) fail_expected("a name to declare", name);
   if (name.name->keyword != kNoKeyword)
     fail(name.where, "expected a name to declare, found the keyword " + in_quotes(name.name->text));
@@ -192,7 +198,8 @@ void Interpreter::declare(bool local) {
   hold_ = {frames_.size(), open_.size(), false};
   Datum value = named(parse_value(), name.name->text);
   // Textures in a row are the layers of one.
-  if (const BlockPtr* first = value.get<BlockPtr>(); first && (*first)->keyword == "texture" && !next_is(';')) {
+  if (const BlockPtr* first = value.get<BlockPtr>();
+      first && (*first)->keyword == "texture" && !next_is(';')) {
     std::shared_ptr<Block> layers;
     while (peek().keyword() == "texture"_kw) {
       const Token keyword = take();
@@ -230,7 +237,8 @@ void Interpreter::undef() {
 
 void Interpreter::define_macro(const Place& where) {
   const Token name = take_written();
-  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword) fail_expected("the name of a macro", name);
+  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
+    fail_expected("the name of a macro", name);
   auto macro = std::make_shared<Macro>();
   macro->name = name.name->text;
   const Token open = take_written();
@@ -239,7 +247,8 @@ void Interpreter::define_macro(const Place& where) {
     Token token = take_written();
     if (token.is(')')) break;
     if (token.is(',')) continue;
-    const bool optional = token.kind == Token::Kind::word && token.name->text == "optional" && !next_is(',') && !next_is(')');
+    const bool optional =
+        token.kind == Token::Kind::word && token.name->text == "optional" && !next_is(',') && !next_is(')');
     if (optional) token = take_written();
     if (token.kind != Token::Kind::word || token.name->keyword != kNoKeyword)
       fail_expected("the name of a parameter of the macro '" + macro->name + "'", token);
@@ -390,7 +399,8 @@ void Interpreter::select_case(const Place& where) {
   }
 }
 
-void Interpreter::begin_while(const Place& where, const Cursor& start) {
+void Interpreter::begin_while(const Place& where) {
+  const Cursor start = at_;
   if (!condition()) {
     skip_block(where, false, false);
     return;
@@ -401,7 +411,8 @@ void Interpreter::begin_while(const Place& where, const Cursor& start) {
 void Interpreter::begin_for(const Place& where) {
   expect('(', "behind #for");
   const Token name = take_written();
-  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword) fail_expected("the name of a counter", name);
+  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
+    fail_expected("the name of a counter", name);
   skip_comma();
   const double first = parse_float();
   skip_comma();
@@ -426,7 +437,8 @@ bool Interpreter::for_goes_on(std::size_t index) {
   const Open& loop = open_[index];
   const Datum* const counter = loop.counter.find();
   const Numbers* const number = counter ? counter->get<Numbers>() : nullptr;
-  if (number == nullptr || number->size != 1) fail(loop.where, "the counter of this loop is no number any more");
+  if (number == nullptr || number->size != 1)
+    fail(loop.where, "the counter of this loop is no number any more");
   return loop.step > 0 ? number->v[0] <= loop.last + kTolerance : number->v[0] >= loop.last - kTolerance;
 }
 
@@ -454,7 +466,8 @@ void Interpreter::reach_end(const Place& where) {
     } else {
       const Datum* const counter = loop.counter.find();
       const Numbers* const number = counter ? counter->get<Numbers>() : nullptr;
-      if (number == nullptr || number->size != 1) fail(loop.where, "the counter of this loop is no number any more");
+      if (number == nullptr || number->size != 1)
+        fail(loop.where, "the counter of this loop is no number any more");
       Datum next;
       next.value = Numbers{{number->v[0] + loop.step}, 1, false};
       store(loop.counter, std::move(next));
@@ -492,24 +505,26 @@ static std::string find_file(const std::string& name, const std::vector<std::str
 
 /// The folder of the file that is being read comes first, then that of the scene.
 static std::vector<std::string> folders_for(const std::string& name, const std::string& reading,
-                                            const std::string& scene, const std::vector<std::string>& library) {
+                                            const std::string& scene, const ReadOptions& options) {
   namespace fs = std::filesystem;
   if (fs::path(name).is_absolute()) return {""};
-  std::vector<std::string> folders{fs::path(reading).parent_path().string(), fs::path(scene).parent_path().string()};
-  folders.insert(folders.end(), library.begin(), library.end());
+  std::vector<std::string> folders{fs::path(reading).parent_path().string(),
+                                   fs::path(scene).parent_path().string()};
+  // What the scene has written may be included, too.
+  if (!options.file_folder.empty()) folders.push_back(options.file_folder);
+  folders.insert(folders.end(), options.library_folders.begin(), options.library_folders.end());
   return folders;
 }
 
 bool Interpreter::file_exists(const std::string& name) const {
-  return !find_file(name, folders_for(name, at_.source->path, document_.files[0], options_.library_folders)).empty();
+  return !find_file(name, folders_for(name, at_.source->path, document_.files[0], options_)).empty();
 }
 
 void Interpreter::include(const Place& where) {
   namespace fs = std::filesystem;
   const std::string name = parse_string();
   if (next_is(';')) take();
-  const std::vector<std::string> folders =
-      folders_for(name, at_.source->path, document_.files[0], options_.library_folders);
+  const std::vector<std::string> folders = folders_for(name, at_.source->path, document_.files[0], options_);
   const std::string path = find_file(name, folders);
   if (path.empty())
     fail(where, "cannot include " + in_quotes(name) + ": no such file beside " + in_quotes(at_.source->path) +

@@ -17,7 +17,8 @@ Error Document::error(const Place& where, const std::string& message) const {
       text += ", ...";
       break;
     }
-    text += (i == 0 ? "; in macro '" : ", in '") + macro.name + "' called at " + to_string(location(macro.where));
+    text +=
+        (i == 0 ? "; in macro '" : ", in '") + macro.name + "' called at " + to_string(location(macro.where));
     call = macro.where.call;
   }
   return Error(location(where), text);

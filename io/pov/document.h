@@ -48,8 +48,8 @@ struct Function;
 struct Spline;
 struct Element;
 
-using Value = std::variant<Numbers, std::string, Word, std::shared_ptr<const Block>, std::shared_ptr<const Function>,
-                           std::shared_ptr<const Spline>>;
+using Value = std::variant<Numbers, std::string, Word, std::shared_ptr<const Block>,
+                           std::shared_ptr<const Function>, std::shared_ptr<const Spline>>;
 
 /// One thing in a statement, in the order of the file. Commas are left out.
 struct Element {
@@ -63,8 +63,9 @@ struct Block {
   std::string_view keyword;
   Place where;
   std::vector<Element> elements;
-  std::string name;                              ///< by which it was declared; empty: it has none
-  std::shared_ptr<const Block> default_texture;  ///< of #default where an object stands; null: the program's own
+  std::string name;  ///< by which it was declared; empty: it has none
+  std::shared_ptr<const Block>
+      default_texture;  ///< of #default where an object stands; null: the program's own
 };
 
 /// A step of a function: an operation on the results of `operands`.
@@ -72,13 +73,13 @@ struct FunctionNode {
   enum class Op : std::uint8_t {
     constant,   ///< `number`
     parameter,  ///< number `index`
-    call,       ///< `name`: an operator ("+", "-", "*", "/", "neg", "!", "<", "<=", "=", "!=", ">=", ">", "&",
-                ///< "|"), a built-in function ("sin", ...), or "if" for select-like operators
-    internal,   ///< `function { internal(N) }` with number `index`, as functions.inc declares f_... functions
-    user,       ///< another function, `function`
-    spline,     ///< `spline`, of one operand; of its vector the component `index`
-    pattern,    ///< `function { pattern { ... } }` or a pigment's: `block`, of three operands; component `index`
-                ///< of a colour, 0 of a pattern
+    call,      ///< `name`: an operator ("+", "-", "*", "/", "neg", "!", "<", "<=", "=", "!=", ">=", ">", "&",
+               ///< "|"), a built-in function ("sin", ...), or "if" for select-like operators
+    internal,  ///< `function { internal(N) }` with number `index`, as functions.inc declares f_... functions
+    user,      ///< another function, `function`
+    spline,    ///< `spline`, of one operand; of its vector the component `index`
+    pattern,   ///< `function { pattern { ... } }` or a pigment's: `block`, of three operands; component
+              ///< `index` of a colour, 0 of a pattern
     transform,  ///< `function { transform { ... } }`: `block`, of three operands; component `index`
   };
   Op op = Op::constant;

@@ -23,7 +23,8 @@ class Evaluation {
   /// The value, or the components of a function that has some.
   Numbers value(const Function& function, std::span<const double> arguments) {
     const FunctionNode& last = function.nodes.back();
-    if (last.op == FunctionNode::Op::internal && function.nodes.size() == 1) return {{internal(last, arguments)}, 1, false};
+    if (last.op == FunctionNode::Op::internal && function.nodes.size() == 1)
+      return {{internal(last, arguments)}, 1, false};
     check_count(function, arguments.size());
     const std::vector<double> values = run(function, arguments);
     if (!has_components(function)) return {{values.back()}, 1, false};
@@ -55,8 +56,10 @@ class Evaluation {
     return values;
   }
 
-  double step(const FunctionNode& node, const std::vector<double>& values, std::span<const double> arguments) {
-    if (++steps_ > most_steps_) throw NoValue{"the scene takes more than " + std::to_string(most_steps_) + " steps"};
+  double step(const FunctionNode& node, const std::vector<double>& values,
+              std::span<const double> arguments) {
+    if (++steps_ > most_steps_)
+      throw NoValue{"the scene takes more than " + std::to_string(most_steps_) + " steps"};
     switch (node.op) {
       case FunctionNode::Op::constant:
         return node.number;
@@ -76,7 +79,8 @@ class Evaluation {
   double call(const FunctionNode& node, const std::vector<double>& values) {
     const auto at = [&](std::size_t i) { return values[node.operands[i]]; };
     if (node.function != nullptr) return loop(node, values);
-    if (const NumericFunction* numeric = find_numeric(node.name)) return numeric->value(operands(node, values));
+    if (const NumericFunction* numeric = find_numeric(node.name))
+      return numeric->value(operands(node, values));
     if (node.name == "neg") return -at(0);
     if (node.name == "!") return at(0) == 0;
     switch (node.name[0]) {
@@ -120,7 +124,9 @@ class Evaluation {
 
   double internal(const FunctionNode& node, std::span<const double> arguments) {
     const auto value = queries_ ? queries_->internal(node.index, arguments) : std::nullopt;
-    if (!value) throw NoValue{"the internal function " + std::to_string(node.index) + " has no value while a scene is read"};
+    if (!value)
+      throw NoValue{"the internal function " + std::to_string(node.index) +
+                    " has no value while a scene is read"};
     return *value;
   }
 
@@ -175,8 +181,7 @@ Matrix inverse(const Matrix& m, const Place& where, const Document& document) {
   if (determinant == 0) throw document.error(where, "this transform has no inverse");
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) r[i][j] = minor(j, i) / determinant;
-  for (std::size_t j = 0; j < 3; ++j)
-    r[3][j] = -(m[3][0] * r[0][j] + m[3][1] * r[1][j] + m[3][2] * r[2][j]);
+  for (std::size_t j = 0; j < 3; ++j) r[3][j] = -(m[3][0] * r[0][j] + m[3][1] * r[1][j] + m[3][2] * r[2][j]);
   return r;
 }
 
@@ -269,8 +274,9 @@ std::array<double, 5> evaluate(const Spline& spline, double at) {
   if (cubic && at >= points[n - 2].at) return points[n - 2].value;
   if (!(at > points.front().at) || n == 1) return points.front().value;
   if (at >= points.back().at) return points.back().value;
-  const auto behind = std::upper_bound(points.begin(), points.end(), at,
-                                       [](double value, const Spline::Point& point) { return value < point.at; });
+  const auto behind =
+      std::upper_bound(points.begin(), points.end(), at,
+                       [](double value, const Spline::Point& point) { return value < point.at; });
   const auto i = static_cast<std::size_t>(behind - points.begin()) - 1;
   const Spline::Point &p = points[i], &q = points[i + 1];
   const double width = q.at - p.at, u = (at - p.at) / width;
@@ -292,7 +298,8 @@ std::array<double, 5> evaluate(const Spline& spline, double at) {
         value += weight * points[k].value[c];
       }
     } else if (cubic) {
-      const double start = width * 0.5 * (slope(i - 1) + slope(i)), end = width * 0.5 * (slope(i) + slope(i + 1));
+      const double start = width * 0.5 * (slope(i - 1) + slope(i)),
+                   end = width * 0.5 * (slope(i) + slope(i + 1));
       const double v = 1 - u;
       value = v * v * (1 + 2 * u) * a + u * u * (3 - 2 * u) * b + u * v * v * start - u * u * v * end;
     } else if (spline.kind == Spline::Kind::natural && n > 2) {

@@ -40,7 +40,8 @@ double decoded(double x) {
 bool is_color_keyword(Keyword keyword) { return starts_color(keyword); }
 
 double Interpreter::to_float(const Numbers& value, const Place& where) const {
-  if (value.size != 1) fail(where, value.is_color ? "expected a number, found a colour" : "expected a number, found a vector");
+  if (value.size != 1)
+    fail(where, value.is_color ? "expected a number, found a colour" : "expected a number, found a vector");
   return value.v[0];
 }
 
@@ -80,7 +81,8 @@ Numbers Interpreter::parse_logic() {
         if (pending_.empty() && !is_letter(*at_.p)) return value;
       }
       const Token operation = peek();
-      const bool is_comparison = operation.is('<') || operation.is('>') || operation.is('=') || operation.is('!');
+      const bool is_comparison =
+          operation.is('<') || operation.is('>') || operation.is('=') || operation.is('!');
       if (!is_comparison) return value;
       take();
       const bool or_equal = operation.sign != '=' && pending_.empty() && *at_.p == '=';
@@ -128,7 +130,8 @@ Numbers Interpreter::parse_product() {
     if (!operation.is('*') && !operation.is('/')) break;
     take();
     const Numbers other = parse_factor();
-    if (operation.sign == '/' && std::find(other.v.begin(), other.v.begin() + other.size, 0) != other.v.begin() + other.size &&
+    if (operation.sign == '/' &&
+        std::find(other.v.begin(), other.v.begin() + other.size, 0) != other.v.begin() + other.size &&
         value.size <= other.size)
       warn(operation.where, "division by zero");
     value = combine(operation.sign, value, other);
@@ -210,7 +213,8 @@ Numbers Interpreter::call_value(const Datum& datum, const Token& name) {
     if (take_if(',')) {
       const Token kind = take();
       copy = **spline;
-      if (!spline_kind(kind.keyword(), copy.kind)) fail_expected("a kind of spline, such as linear_spline", kind);
+      if (!spline_kind(kind.keyword(), copy.kind))
+        fail_expected("a kind of spline, such as linear_spline", kind);
       used = &copy;
     }
     expect(')', "behind the place on a spline");
@@ -219,7 +223,9 @@ Numbers Interpreter::call_value(const Datum& datum, const Token& name) {
   }
   const bool is_text = datum.get<std::string>() != nullptr;
   fail(name.where, "expected a number, a vector or a colour, found " + in_quotes(name.name->text) +
-                       (is_text ? ", which is a string" : datum.array() ? ", which is an array" : ", which is something else"));
+                       (is_text         ? ", which is a string"
+                        : datum.array() ? ", which is an array"
+                                        : ", which is something else"));
 }
 
 Numbers Interpreter::parse_postfix(Numbers value) {
@@ -230,8 +236,8 @@ Numbers Interpreter::parse_postfix(Numbers value) {
     if (index == -2) fail_expected("a component such as x or red behind '.'", name);
     if (value.size == 1 || index >= value.size)
       fail(name.where, value.size == 1 ? "a number has no components"
-                                       : "this vector of " + std::to_string(value.size) + " has no component " +
-                                             in_quotes(name.name->text));
+                                       : "this vector of " + std::to_string(value.size) +
+                                             " has no component " + in_quotes(name.name->text));
     double result = 0;
     if (index >= 0) result = value.v[static_cast<std::size_t>(index)];
     if (index == -1)
@@ -311,7 +317,8 @@ Numbers Interpreter::parse_color(const Token& first) {
   if (token.keyword() == "color"_kw || token.keyword() == "colour"_kw) {
     if (starts_color(peek().keyword())) {
       token = take();
-    } else if (peek().keyword() == "filter"_kw || peek().keyword() == "transmit"_kw || peek().keyword() == "alpha"_kw) {
+    } else if (peek().keyword() == "filter"_kw || peek().keyword() == "transmit"_kw ||
+               peek().keyword() == "alpha"_kw) {
       any = false;
     } else {
       const Numbers value = parse_sum();
@@ -343,8 +350,7 @@ Numbers Interpreter::parse_color(const Token& first) {
       (void)where;
     }
   }
-  while (add_channel(color)) {
-  }
+  while (add_channel(color)) {}
   return color;
 }
 

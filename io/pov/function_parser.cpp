@@ -57,7 +57,8 @@ class FunctionParser {
   }
   Index parameter(std::size_t index) {
     for (std::size_t i = 0; i < function_.nodes.size(); ++i)
-      if (function_.nodes[i].op == Op::parameter && function_.nodes[i].index == index) return static_cast<Index>(i);
+      if (function_.nodes[i].op == Op::parameter && function_.nodes[i].index == index)
+        return static_cast<Index>(i);
     FunctionNode node;
     node.op = Op::parameter;
     node.index = static_cast<Index>(index);
@@ -132,7 +133,11 @@ class FunctionParser {
     Index value = parse_sum();
     for (;;) {
       const Token& token = in_.peek();
-      std::string_view name = token.is('<') ? "<" : token.is('>') ? ">" : token.is('=') ? "=" : token.is('!') ? "!=" : "";
+      std::string_view name = token.is('<')   ? "<"
+                              : token.is('>') ? ">"
+                              : token.is('=') ? "="
+                              : token.is('!') ? "!="
+                                              : "";
       if (name.empty()) return value;
       in_.take();
       const bool or_equal = name != "=" && in_.take_if('=');
@@ -211,8 +216,8 @@ class FunctionParser {
     if (token.name->bindings.empty()) {
       std::vector<std::string> known = in_.names_.declared();
       known.insert(known.end(), function_.parameters.begin(), function_.parameters.end());
-      in_.fail(token.where, "the function has no parameter " + in_quotes(text) + ", and nothing is declared by this name" +
-                                did_you_mean(text, known));
+      in_.fail(token.where, "the function has no parameter " + in_quotes(text) +
+                                ", and nothing is declared by this name" + did_you_mean(text, known));
     }
     const Reference reference = in_.access(token);
     const Datum datum = in_.value_of(reference, token);
@@ -310,11 +315,13 @@ class FunctionParser {
     }
     if (has_components(*function)) {
       const int size = last.op == Op::transform ? 3 : last.op == Op::spline ? last.spline->size : 5;
-      return components(token, last, std::move(arguments), function->parameters.size(), static_cast<std::uint8_t>(size));
+      return components(token, last, std::move(arguments), function->parameters.size(),
+                        static_cast<std::uint8_t>(size));
     }
     if (arguments.size() != function->parameters.size())
-      in_.fail(token.where, in_quotes(token.name->text) + " takes " + std::to_string(function->parameters.size()) +
-                                " values, found " + std::to_string(arguments.size()));
+      in_.fail(token.where, in_quotes(token.name->text) + " takes " +
+                                std::to_string(function->parameters.size()) + " values, found " +
+                                std::to_string(arguments.size()));
     FunctionNode node;
     node.op = Op::user;
     node.function = function;
@@ -326,8 +333,8 @@ class FunctionParser {
   Index components(const Token& token, FunctionNode node, std::vector<Index> arguments, std::size_t count,
                    std::uint8_t size) {
     if (arguments.size() != count)
-      in_.fail(token.where, in_quotes(token.name->text) + " takes " + std::to_string(count) + " values, found " +
-                                std::to_string(arguments.size()));
+      in_.fail(token.where, in_quotes(token.name->text) + " takes " + std::to_string(count) +
+                                " values, found " + std::to_string(arguments.size()));
     node.operands = std::move(arguments);
     int index = 0;
     if (in_.next_is('.')) {

@@ -77,7 +77,7 @@ class Interpreter {
   void reach_else(const Place& where);
   void reach_case(const Place& where);
   void reach_end(const Place& where);
-  void begin_while(const Place& where, const Cursor& condition);
+  void begin_while(const Place& where);
   void begin_for(const Place& where);
   void begin_switch(const Place& where);
   void break_out(const Place& where);
@@ -141,7 +141,8 @@ class Interpreter {
   bool file_exists(const std::string& name) const;
 
   // ---- Statements (blocks.cpp)
-  void parse_elements(std::vector<Element>& elements, const Token& opening, char closing, std::uint32_t& depth);
+  void parse_elements(std::vector<Element>& elements, const Token& opening, char closing,
+                      std::uint32_t& depth);
   bool take_plain_numbers(std::vector<Element>& elements);
   void parse_element(std::vector<Element>& elements, std::uint32_t& depth);
   void add_value(std::vector<Element>& elements, const Token& token, std::uint32_t& depth);
@@ -176,21 +177,21 @@ class Interpreter {
     enum class Kind : std::uint8_t { chosen, repeated, counted, switched };
     Kind kind = Kind::chosen;
     Place where;
-    Cursor start{};         ///< of the condition of #while, of the body of #for
-    Reference counter{};    ///< of #for
+    Cursor start{};       ///< of the condition of #while, of the body of #for
+    Reference counter{};  ///< of #for
     double last = 0, step = 1;
-    double value = 0;       ///< of #switch
+    double value = 0;  ///< of #switch
   };
 
   /// A file or a call of a macro whose text is being read.
   struct Frame {
-    Cursor back;           ///< where its caller goes on
-    std::size_t open;      ///< how many of open_ belong to its callers
-    std::uint32_t scope;   ///< of its locals
-    const Source* file;    ///< null: a macro
+    Cursor back;          ///< where its caller goes on
+    std::size_t open;     ///< how many of open_ belong to its callers
+    std::uint32_t scope;  ///< of its locals
+    const Source* file;   ///< null: a macro
     std::shared_ptr<const Macro> macro;
     std::uint32_t call;
-    double version;        ///< before the file
+    double version;  ///< before the file
     std::vector<Name*> locals{};
   };
 
@@ -204,8 +205,8 @@ class Interpreter {
   std::uint32_t call_ = Place::kNoCall;
   std::vector<Frame> frames_;
   std::vector<Open> open_;
-  std::vector<Token> pending_;      ///< read already, the next one last
-  std::optional<Numbers> term_;     ///< the next term, read already
+  std::vector<Token> pending_;   ///< read already, the next one last
+  std::optional<Numbers> term_;  ///< the next term, read already
   /// Directives at the level of a declaration wait for its end: the numbers of frames and of open directives.
   struct Hold {
     std::size_t frames = ~std::size_t{0}, open = 0;

@@ -3,14 +3,24 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 
 #include "io/text/number.h"
+#include "io/text/scan.h"
 
 namespace oktett::pov {
 
-Source::Source(const std::string& of_path, std::uint32_t of_file)
-    : content(of_path), path(of_path), file(of_file), end(content.text().data() + content.text().size()) {}
+Source::Source(const std::string& of_path, std::uint32_t of_file, bool copied)
+    : content(of_path), text(content->text()), path(of_path), file(of_file) {
+  if (copied) {
+    const std::size_t size = text.size();
+    copy = text;
+    copy.append(FileContent::kPadding, '\0');
+    content.reset();
+    text = std::string_view(copy).substr(0, size);
+  }
+  text = without_byte_order_mark(text);
+  end = text.data() + text.size();
+}
 
 Names::Names() {
   for (std::size_t i = 0; i < kKeywords.size(); ++i) intern(kKeywords[i]).keyword = static_cast<Keyword>(i);
@@ -127,7 +137,7 @@ const char* scan_number(const char* p, const char* end, double& value) {
   return q;
 }
 
-static Token lex_string(Cursor& at, Token token) {
+static void lex_string(Cursor& at, Token& token) {
   const Cursor start = at;
   const char* const begin = at.p + 1;
   for (const char* p = begin; p < at.source->end; ++p) {
@@ -135,7 +145,7 @@ static Token lex_string(Cursor& at, Token token) {
       token.kind = Token::Kind::string;
       token.text = {begin, static_cast<std::size_t>(p - begin)};
       at.p = p + 1;
-      return token;
+      return;
     }
     if (*p == '\\') ++p;
     if (*p == '\n') {
@@ -146,35 +156,38 @@ static Token lex_string(Cursor& at, Token token) {
   throw LexError{start, "the string that starts here has no end"};
 }
 
-Token lex(Cursor& at, Names& names) {
-  skip_space(at);
-  Token token;
+/// Signs of the language.
+static constexpr std::array<bool, 256> kSigns = [] {
+  std::array<bool, 256> result{};
+  for (const char c : std::string_view("#{}[]()<>,;+-*/.=!&|?:"))
+    result[static_cast<unsigned char>(c)] = true;
+  return result;
+}();
+
+void lex(Cursor& at, Names& names, Token& token) {
   token.where = at.place();
   const char* const p = at.p;
-  if (p >= at.source->end) {
-    at.p = at.source->end;
-    return token;
-  }
-  if (is_digit(*p) || (*p == '.' && is_digit(p[1]))) {
-    token.kind = Token::Kind::number;
-    at.p = scan_number(p, at.source->end, token.number);
-    return token;
-  }
   if (is_letter(*p)) {
     const char* q = p + 1;
     while (is_letter(*q) || is_digit(*q)) ++q;
     token.kind = Token::Kind::word;
     token.name = &names.intern({p, static_cast<std::size_t>(q - p)});
     at.p = q;
-    return token;
-  }
-  if (*p == '"') return lex_string(at, token);
-  if (*p == '\0' || std::strchr("#{}[]()<>,;+-*/.=!&|?:", *p) == nullptr)
+  } else if (is_digit(*p) || (*p == '.' && is_digit(p[1]))) {
+    token.kind = Token::Kind::number;
+    at.p = scan_number(p, at.source->end, token.number);
+  } else if (kSigns[static_cast<unsigned char>(*p)]) {
+    token.kind = Token::Kind::sign;
+    token.sign = *p;
+    at.p = p + 1;
+  } else if (*p == '"') {
+    lex_string(at, token);
+  } else if (p >= at.source->end) {
+    token.kind = Token::Kind::end;
+    at.p = at.source->end;
+  } else {
     throw LexError{at, "unexpected character " + in_quotes({p, 1})};
-  token.kind = Token::Kind::sign;
-  token.sign = *p;
-  at.p = p + 1;
-  return token;
+  }
 }
 
 std::string in_quotes(std::string_view text) {

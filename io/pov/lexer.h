@@ -1,9 +1,10 @@
 #pragma once
-/// \file Words, numbers, strings and signs of POV-Ray's language, read one after the other from a file in memory.
-/// Nothing is kept of what was read: loops and macros read their text again.
+/// \file Words, numbers, strings and signs of POV-Ray's language, read one after the other from a file in
+/// memory. Nothing is kept of what was read: loops and macros read their text again.
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -18,9 +19,12 @@ namespace oktett::pov {
 
 /// A file whose text is in memory, with zero bytes behind it.
 struct Source {
-  Source(const std::string& path, std::uint32_t file);
+  /// `copied`: the file may change while the scene is read, so it must not stay mapped.
+  Source(const std::string& path, std::uint32_t file, bool copied);
 
-  FileContent content;
+  std::optional<FileContent> content;
+  std::string copy;
+  std::string_view text;
   std::string path;
   std::uint32_t file;  ///< index into Document::files
   const char* end;     ///< of the text
@@ -92,8 +96,8 @@ void skip_space(Cursor& at);
 /// The decimal number at `p`, which starts with a digit or a point and a digit. Returns its end.
 const char* scan_number(const char* p, const char* end, double& value);
 
-/// The next token; words are interned. Throws LexError.
-Token lex(Cursor& at, Names& names);
+/// The token at `at`, which stands behind skip_space, becomes `token`; words are interned. Throws LexError.
+void lex(Cursor& at, Names& names, Token& token);
 
 /// A mistake in the text that hides where its tokens are.
 struct LexError {

@@ -5,7 +5,8 @@
 namespace oktett::pov {
 
 std::vector<std::string> ReadOptions::default_library_folders() {
-  return {"/usr/share/povray-3.7/include", "/usr/share/povray/include", "/usr/local/share/povray-3.7/include"};
+  return {"/usr/share/povray-3.7/include", "/usr/share/povray/include",
+          "/usr/local/share/povray-3.7/include"};
 }
 
 Document read_pov(const std::string& path, const ReadOptions& options) {

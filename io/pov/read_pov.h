@@ -47,22 +47,23 @@ class ObjectQueries {
 /// How much a scene may ask for. Whatever exceeds one of these is an Error that names it.
 struct Limits {
   std::uint32_t include_depth = 64;
-  std::uint32_t includes = 100'000;      ///< files included, each time counted
-  std::uint32_t macro_depth = 2'000;     ///< calls of macros within calls
-  std::uint32_t nesting = 400;           ///< of blocks, parentheses and directives within each other
-  std::uint32_t value_depth = 1'000;     ///< of declared values within values
-  std::uint64_t steps = 2'000'000'000;   ///< directives, calls of macros and functions, passes of loops
-  std::uint64_t values = 200'000'000;    ///< elements of the tree
+  std::uint32_t includes = 100'000;           ///< files included, each time counted
+  std::uint32_t macro_depth = 2'000;          ///< calls of macros within calls
+  std::uint32_t nesting = 400;                ///< of blocks, parentheses and directives within each other
+  std::uint32_t value_depth = 1'000;          ///< of declared values within values
+  std::uint64_t steps = 2'000'000'000;        ///< directives, calls of macros and functions, passes of loops
+  std::uint64_t values = 200'000'000;         ///< elements of the tree
   std::uint64_t array_elements = 50'000'000;  ///< of all arrays together
   std::uint64_t string_length = 1 << 20;
-  std::uint64_t bytes = std::uint64_t{4} << 30;  ///< read from files, each file counted once
+  std::uint64_t bytes = std::uint64_t{4} << 30;         ///< read from files, each file counted once
   std::uint64_t file_bytes = std::uint64_t{512} << 20;  ///< of one file
 };
 
 struct ReadOptions {
   /// Where included files are looked for after the folder of the file that names them and that of the scene.
   std::vector<std::string> library_folders = default_library_folders();
-  std::map<std::string, std::variant<double, std::string>> definitions;  ///< names that the scene finds declared
+  std::map<std::string, std::variant<double, std::string>>
+      definitions;  ///< names that the scene finds declared
   double clock = 0, initial_clock = 0, final_clock = 0, clock_delta = 0;
   bool clock_on = false;
   int frame_number = 0, initial_frame = 0, final_frame = 0;

@@ -102,7 +102,8 @@ std::size_t read_datum(std::string_view text, Datum& datum) {
     const bool negative = copy[at] == '-';
     if (negative || copy[at] == '+') ++at;
     if (!is_digit(copy[at]) && !(copy[at] == '.' && is_digit(copy[at + 1]))) return 0;
-    const char* const end = scan_number(copy.data() + at, copy.data() + copy.size() - FileContent::kPadding, x);
+    const char* const end =
+        scan_number(copy.data() + at, copy.data() + copy.size() - FileContent::kPadding, x);
     if (negative) x = -x;
     return static_cast<std::size_t>(end - copy.data()) - start;
   };
@@ -139,7 +140,8 @@ std::size_t read_datum(std::string_view text, Datum& datum) {
 /// `#fopen NAME "file" read`, `write` or `append`
 void Interpreter::open_file() {
   const Token name = take_written();
-  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword) fail_expected("the name of a file handle", name);
+  if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
+    fail_expected("the name of a file handle", name);
   const std::string path = parse_string();
   const Token how = take_written();
   TextFile::Mode mode = TextFile::Mode::read;
@@ -188,12 +190,14 @@ void Interpreter::close_file() {
 void Interpreter::read_file() {
   expect('(', "behind #read");
   const Token name = take_written();
-  const std::shared_ptr<TextFile> file = (file_handle(name), *name.name->datum()->get<std::shared_ptr<TextFile>>());
+  const std::shared_ptr<TextFile> file =
+      (file_handle(name), *name.name->datum()->get<std::shared_ptr<TextFile>>());
   if (file->mode() != TextFile::Mode::read) fail(name.where, "this file is not open for reading");
   while (!next_is(')')) {
     skip_comma();
     const Token target = take_written();
-    if (target.kind != Token::Kind::word || target.name->keyword != kNoKeyword) fail_expected("a name to read into", target);
+    if (target.kind != Token::Kind::word || target.name->keyword != kNoKeyword)
+      fail_expected("a name to read into", target);
     const Reference reference = next_is('[') ? access(target) : variable(target, false);
     const auto skip_gaps = [&] {
       std::size_t gaps = 0;
@@ -220,7 +224,8 @@ void Interpreter::read_file() {
 void Interpreter::write_file() {
   expect('(', "behind #write");
   const Token name = take_written();
-  const std::shared_ptr<TextFile> file = (file_handle(name), *name.name->datum()->get<std::shared_ptr<TextFile>>());
+  const std::shared_ptr<TextFile> file =
+      (file_handle(name), *name.name->datum()->get<std::shared_ptr<TextFile>>());
   if (file->mode() == TextFile::Mode::read) fail(name.where, "this file is open for reading");
   std::size_t bytes = 0;
   bool big_first = false;

@@ -11,8 +11,8 @@ class TextFile {
  public:
   enum class Mode : std::uint8_t { read, write, append };
 
-  /// Opens `name` below `folder`. Throws what is wrong as a std::string: paths that are absolute, have `..`, or
-  /// pass a link are refused.
+  /// Opens `name` below `folder`. Throws what is wrong as a std::string: paths that are absolute, have `..`,
+  /// or pass a link are refused.
   TextFile(const std::string& folder, const std::string& name, Mode mode, std::size_t most_bytes);
   ~TextFile();
   TextFile(const TextFile&) = delete;

@@ -4,18 +4,20 @@
 
 #include "io/pov/interpreter.h"
 #include "io/text/files.h"
-#include "io/text/scan.h"
 
 namespace oktett::pov {
 
 Interpreter::Interpreter(const ReadOptions& options, Document& document)
     : options_(options), limits_(options.limits), document_(document) {
-  const std::pair<const char*, double> variables[] = {
-      {"clock_delta", options.clock_delta}, {"initial_clock", options.initial_clock},
-      {"final_clock", options.final_clock}, {"frame_number", options.frame_number},
-      {"initial_frame", options.initial_frame}, {"final_frame", options.final_frame},
-      {"image_width", options.image_width}, {"image_height", options.image_height},
-      {"tau", 2 * std::numbers::pi}};
+  const std::pair<const char*, double> variables[] = {{"clock_delta", options.clock_delta},
+                                                      {"initial_clock", options.initial_clock},
+                                                      {"final_clock", options.final_clock},
+                                                      {"frame_number", options.frame_number},
+                                                      {"initial_frame", options.initial_frame},
+                                                      {"final_frame", options.final_frame},
+                                                      {"image_width", options.image_width},
+                                                      {"image_height", options.image_height},
+                                                      {"tau", 2 * std::numbers::pi}};
   for (const auto& [name, value] : variables) {
     Datum datum;
     datum.value = Numbers{{value}, 1, false};
@@ -47,7 +49,9 @@ void Interpreter::run(const std::string& path) {
   document_.version = version_;
 }
 
-void Interpreter::fail(const Place& where, const std::string& message) const { throw document_.error(where, message); }
+void Interpreter::fail(const Place& where, const std::string& message) const {
+  throw document_.error(where, message);
+}
 
 void Interpreter::fail_expected(const std::string& what, const Token& found) const {
   fail(found.where, "expected " + what + ", found " + describe(found));
@@ -93,7 +97,9 @@ void Interpreter::push_back(const Token& token) { pending_.push_back(token); }
 Token Interpreter::take_written() {
   if (!pending_.empty()) return take();
   try {
-    Token token = lex(at_, names_);
+    Token token;
+    skip_space(at_);
+    lex(at_, names_, token);
     token.where.call = call_;
     return token;
   } catch (const LexError& error) {
@@ -131,8 +137,8 @@ bool Interpreter::ends_expression() {
   if (!pending_.empty()) return false;
   if (next_is(',')) return true;
   const char c = *at_.p;
-  return c == '}' || c == ')' || c == '>' || c == '<' || c == ';' || c == ']' || c == '{' || c == '"' || is_digit(c) ||
-         (c == '.' && is_digit(at_.p[1]));
+  return c == '}' || c == ')' || c == '>' || c == '<' || c == ';' || c == ']' || c == '{' || c == '"' ||
+         is_digit(c) || (c == '.' && is_digit(at_.p[1]));
 }
 
 Token Interpreter::fetch() {
@@ -142,7 +148,7 @@ Token Interpreter::fetch() {
     try {
       skip_space(at_);
       start = at_;
-      token = lex(at_, names_);
+      lex(at_, names_, token);
     } catch (const LexError& error) {
       Place where = error.where.place();
       where.call = call_;
@@ -184,7 +190,11 @@ bool Interpreter::leave_frame(Token& token) {
 }
 
 Source& Interpreter::source(const std::string& path, const Place& where) {
-  if (const auto found = source_of_.find(path); found != source_of_.end()) return *found->second;
+  const bool may_change = !options_.file_folder.empty();
+  const auto known = source_of_.find(path);
+  if (known != source_of_.end() && !may_change) return *known->second;
+  const auto file =
+      known != source_of_.end() ? known->second->file : static_cast<std::uint32_t>(document_.files.size());
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path_to_open(path), error);
   const auto check = [&](std::uint64_t bytes) {
@@ -196,14 +206,14 @@ Source& Interpreter::source(const std::string& path, const Place& where) {
   if (!error) check(size);
   std::unique_ptr<Source> source;
   try {
-    source = std::make_unique<Source>(path, static_cast<std::uint32_t>(document_.files.size()));
+    source = std::make_unique<Source>(path, file, may_change);
   } catch (const Error& problem) {
     if (document_.files.empty()) throw;
     fail(where, problem.what());
   }
-  check(source->content.text().size());
-  bytes_ += source->content.text().size();
-  document_.files.push_back(path);
+  check(source->text.size());
+  bytes_ += source->text.size();
+  if (file == document_.files.size()) document_.files.push_back(path);
   sources_.push_back(std::move(source));
   source_of_[path] = sources_.back().get();
   return *sources_.back();
@@ -212,14 +222,14 @@ Source& Interpreter::source(const std::string& path, const Place& where) {
 void Interpreter::enter_file(const std::string& path, const Place& where) {
   if (++includes_ > limits_.includes)
     fail(where, "more than " + std::to_string(limits_.includes) + " files are included");
-  const auto depth = static_cast<std::uint32_t>(
-      std::count_if(frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.macro == nullptr; }));
+  const auto depth = static_cast<std::uint32_t>(std::count_if(
+      frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.macro == nullptr; }));
   if (depth > limits_.include_depth)
     fail(where, "more than " + std::to_string(limits_.include_depth) + " files include each other");
   Source& file = source(path, where);
-  frames_.push_back({at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_, version_});
-  const std::string_view text = without_byte_order_mark(file.content.text());
-  at_ = {&file, text.data(), text.data(), 1};
+  frames_.push_back(
+      {at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_, version_});
+  at_ = {&file, file.text.data(), file.text.data(), 1};
 }
 
 std::uint32_t Interpreter::note_call(const Macro& macro, const Place& where) {
@@ -238,7 +248,8 @@ void Interpreter::call_macro(const Token& token, const Macro& macro) {
   const Level level(*this, token.where);
   count_step(token.where);
   if (macro_depth_ >= limits_.macro_depth)
-    fail(token.where, "more than " + std::to_string(limits_.macro_depth) + " calls of macros within each other");
+    fail(token.where,
+         "more than " + std::to_string(limits_.macro_depth) + " calls of macros within each other");
   const std::string what = "macro '" + macro.name + "'";
   const Hold outer = hold_;
   hold_ = {};
@@ -248,7 +259,9 @@ void Interpreter::call_macro(const Token& token, const Macro& macro) {
   const std::size_t count = macro.parameters.size();
   while (!peek().is(')')) {
     if (arguments.size() == count)
-      fail_expected("')', as " + what + " takes " + std::to_string(count) + (count == 1 ? " value" : " values"), peek());
+      fail_expected(
+          "')', as " + what + " takes " + std::to_string(count) + (count == 1 ? " value" : " values"),
+          peek());
     if (peek().is(',')) {  // an optional one left out
       if (!macro.parameters[arguments.size()].optional) fail_expected("a value for " + what, peek());
       take();
@@ -276,8 +289,10 @@ void Interpreter::call_macro(const Token& token, const Macro& macro) {
   hold_ = outer;
   while (arguments.size() < count && macro.parameters[arguments.size()].optional) arguments.emplace_back();
   if (arguments.size() < count)
-    fail(token.where, what + " takes " + std::to_string(count) + " values, found " + std::to_string(arguments.size()));
-  Frame frame{at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), nullptr, nullptr, call_, version_};
+    fail(token.where,
+         what + " takes " + std::to_string(count) + " values, found " + std::to_string(arguments.size()));
+  Frame frame{at_,   open_.size(), static_cast<std::uint32_t>(frames_.size()), nullptr, nullptr,
+              call_, version_};
   frame.macro = std::get<std::shared_ptr<const Macro>>(token.name->bindings.back().value.find()->value);
   frames_.push_back(std::move(frame));
   for (std::size_t i = 0; i < count; ++i) {
@@ -297,7 +312,8 @@ void Interpreter::bind(Name& name, std::uint32_t scope, Reference reference) {
 void Interpreter::undeclared(const Token& name) {
   std::vector<std::string> known = names_.declared();
   known.insert(known.end(), kKeywords.begin(), kKeywords.end());
-  fail(name.where, "nothing is declared as " + in_quotes(name.name->text) + did_you_mean(name.name->text, known));
+  fail(name.where,
+       "nothing is declared as " + in_quotes(name.name->text) + did_you_mean(name.name->text, known));
 }
 
 /// What a name stands for, with the indices behind it.
@@ -317,16 +333,18 @@ Reference Interpreter::access(const Token& name) {
   while (used < indices.size()) {
     const Datum* const datum = reference.find();
     const Array* const array = datum ? datum->array() : nullptr;
-    if (array == nullptr) fail(indices[used].second, in_quotes(name.name->text) + " has no index here: it is no array");
+    if (array == nullptr)
+      fail(indices[used].second, in_quotes(name.name->text) + " has no index here: it is no array");
     if (indices.size() - used < array->sizes.size())
-      fail(name.where, "the array " + in_quotes(name.name->text) + " takes " + std::to_string(array->sizes.size()) +
-                           " indices, found " + std::to_string(indices.size() - used));
+      fail(name.where, "the array " + in_quotes(name.name->text) + " takes " +
+                           std::to_string(array->sizes.size()) + " indices, found " +
+                           std::to_string(indices.size() - used));
     std::size_t index = 0;
     for (const std::size_t size : array->sizes) {
       const auto& [value, where] = indices[used++];
       if (!(value > -1 && value < static_cast<double>(size)))
-        fail(where, "index " + std::to_string(value) + " is out of range: the array " + in_quotes(name.name->text) +
-                        " has elements 0 to " + std::to_string(size - 1));
+        fail(where, "index " + std::to_string(value) + " is out of range: the array " +
+                        in_quotes(name.name->text) + " has elements 0 to " + std::to_string(size - 1));
       index = index * size + static_cast<std::size_t>(value);
     }
     reference.path.push_back(index);
@@ -337,8 +355,9 @@ Reference Interpreter::access(const Token& name) {
 const Datum& Interpreter::value_of(const Reference& reference, const Token& name) {
   const Datum* const datum = reference.find();
   if (datum != nullptr && !datum->empty()) return *datum;
-  fail(name.where, reference.path.empty() ? in_quotes(name.name->text) + " has no value yet"
-                                          : "this element of " + in_quotes(name.name->text) + " has no value yet");
+  fail(name.where, reference.path.empty()
+                       ? in_quotes(name.name->text) + " has no value yet"
+                       : "this element of " + in_quotes(name.name->text) + " has no value yet");
 }
 
 }  // namespace oktett::pov
