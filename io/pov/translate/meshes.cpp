@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "core/far_mesh.h"
-#include "io/mesh/polygon.h"
 #include "io/pov/translate/extent.h"
+#include "io/pov/translate/plane_loops.h"
 
 namespace oktett::pov {
 
@@ -84,89 +84,7 @@ class Parts {
   MadeMesh made;
 };
 
-// ---- Plane loops with holes.
-
-double area(const Loop& loop) {
-  double sum = 0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const PlainPoint &a = loop[i], &b = loop[(i + 1) % loop.size()];
-    sum += a.x * b.y - b.x * a.y;
-  }
-  return sum / 2;
-}
-
-bool contains(const Loop& loop, const PlainPoint& p) {
-  bool inside = false;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const PlainPoint &a = loop[i], &b = loop[(i + 1) % loop.size()];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
-  }
-  return inside;
-}
-
-/// Joins a hole to an outline by a bridge to the right of the hole's rightmost corner.
-void bridge(Loop& outline, const Loop& hole, const std::vector<const Loop*>& holes) {
-  std::size_t from = 0;
-  for (std::size_t i = 1; i < hole.size(); ++i)
-    if (hole[i].x > hole[from].x) from = i;
-  const PlainPoint p = hole[from];
-  // The corner of the outline that is seen from there, nearest first.
-  std::vector<std::size_t> order(outline.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto distance = [&](std::size_t i) { return std::hypot(outline[i].x - p.x, outline[i].y - p.y); };
-  std::ranges::stable_sort(order, {}, distance);
-  const auto side = [](const PlainPoint& a, const PlainPoint& b, const PlainPoint& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-  };
-  const auto crosses = [&](const Loop& loop, const PlainPoint& q) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const PlainPoint &a = loop[i], &b = loop[(i + 1) % loop.size()];
-      if (side(p, q, a) * side(p, q, b) < 0 && side(a, b, p) * side(a, b, q) < 0) return true;
-    }
-    return false;
-  };
-  std::size_t to = order[0];
-  for (const std::size_t i : order)
-    if (!crosses(outline, outline[i]) &&
-        std::ranges::none_of(holes, [&](const Loop* other) { return crosses(*other, outline[i]); })) {
-      to = i;
-      break;
-    }
-  Loop joined(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(to) + 1);
-  for (std::size_t i = 0; i <= hole.size(); ++i) joined.push_back(hole[(from + i) % hole.size()]);
-  joined.insert(joined.end(), outline.begin() + static_cast<std::ptrdiff_t>(to), outline.end());
-  outline = std::move(joined);
-}
-
-/// Calls add(a, b, c) for triangles, turned to the left, that cover what lies inside of an odd number of
-/// loops.
-void fill(std::vector<Loop> loops, const std::function<void(PlainPoint, PlainPoint, PlainPoint)>& add) {
-  std::vector<int> depth(loops.size());
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    for (std::size_t j = 0; j < loops.size(); ++j) depth[i] += i != j && contains(loops[j], loops[i][0]);
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    if ((area(loops[i]) > 0) != (depth[i] % 2 == 0)) std::ranges::reverse(loops[i]);
-  PolygonTriangulator triangulator;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (depth[i] % 2 != 0) continue;
-    Loop outline = loops[i];
-    std::vector<const Loop*> holes;
-    for (std::size_t j = 0; j < loops.size(); ++j)
-      if (depth[j] == depth[i] + 1 && contains(loops[i], loops[j][0])) holes.push_back(&loops[j]);
-    const auto rightmost = [](const Loop* loop) {
-      double x = -HUGE_VAL;
-      for (const PlainPoint& p : *loop) x = std::max(x, p.x);
-      return -x;
-    };
-    std::ranges::stable_sort(holes, {}, rightmost);
-    for (const Loop* hole : holes) bridge(outline, *hole, holes);
-    std::vector<Vec3f> points;
-    for (const PlainPoint& p : outline) points.push_back(Vec3f(Vec3d{p.x, p.y, 0}));
-    const auto triangles = triangulator.run(points);
-    for (std::size_t k = 0; k + 2 < triangles.size(); k += 3)
-      add(outline[triangles[k]], outline[triangles[k + 1]], outline[triangles[k + 2]]);
-  }
-}
+// ---- Polygons.
 
 /// Cuts a list of points, of which each loop ends with its first point, into loops.
 template <class Point>
@@ -357,10 +275,10 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
                                                                                                       : 2;
   const int ax = (drop + 1) % 3, ay = (drop + 2) % 3;
   const double height = dot(normal, loops[0][0]);
-  std::vector<Loop> flat;
+  std::vector<Outline> flat;
   for (const auto& loop : loops) {
     flat.emplace_back();
-    for (const Vec3d& p : loop) flat.back().push_back({p[ax], p[ay]});
+    for (const Vec3d& p : loop) flat.back().points.push_back({p[ax], p[ay]});
   }
   const auto lift = [&](const PlainPoint& p) {
     Vec3d out;
@@ -379,12 +297,6 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
 
 /// Pieces into which a curved span is cut.
 constexpr int kSpanSteps = 16;
-
-/// A loop with its normals: those of the edge before and behind each corner differ at creases.
-struct Outline {
-  Loop points;
-  std::vector<PlainPoint> tangents;  ///< of smooth outlines, one for each point
-};
 
 PlainPoint mix(const PlainPoint& a, double s, const PlainPoint& b, double t, const PlainPoint& c = {0, 0},
                double u = 0, const PlainPoint& d = {0, 0}, double v = 0) {
@@ -475,9 +387,15 @@ std::optional<MadeMesh> make_prism(Context& context, Arguments& a) {
     return Vec3d{p.x * scale, heights[end], p.y * scale};
   };
   MeshMaker mesh;
-  std::vector<Loop> loops;
+  const auto cap = [&](PlainPoint p, PlainPoint q, PlainPoint r) {
+    for (const int end : {0, 1})
+      if (!conic || heights[end] != 0)
+        mesh.add({MeshCorner{at(p, end)}, MeshCorner{at(end == 0 ? q : r, end)},
+                  MeshCorner{at(end == 0 ? r : q, end)}});
+  };
+  // Outlines that cross each other get further points, which the sides have, too.
+  if (!open) fill(outlines, cap);
   for (const Outline& outline : outlines) {
-    loops.push_back(outline.points);
     const std::size_t n = outline.points.size();
     const double turn = area(outline.points) > 0 ? 1 : -1;
     for (std::size_t i = 0; i < n; ++i) {
@@ -505,13 +423,6 @@ std::optional<MadeMesh> make_prism(Context& context, Arguments& a) {
   if (spline != "linear_spline")
     context.tell("curved prism", where,
                  fmt::format("curved prisms are meshes with {} flat sides for each span", kSpanSteps));
-  if (!open)
-    fill(loops, [&](PlainPoint p, PlainPoint q, PlainPoint r) {
-      for (const int end : {0, 1})
-        if (!conic || heights[end] != 0)
-          mesh.add({MeshCorner{at(p, end)}, MeshCorner{at(end == 0 ? q : r, end)},
-                    MeshCorner{at(end == 0 ? r : q, end)}});
-    });
   return MadeMesh{{{mesh, nullptr}}, !open};
 }
 

@@ -14,11 +14,6 @@
 
 namespace oktett::pov {
 
-struct PlainPoint {
-  double x, y;
-};
-using Loop = std::vector<PlainPoint>;
-
 /// A corner of a triangle.
 struct MeshCorner {
   Vec3d position{};
