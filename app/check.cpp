@@ -77,7 +77,7 @@ void add_check_command(CommandLine& line) {
   const auto arguments = std::make_shared<CheckArguments>();
   Verb verb = line.add_verb("check", "Print all that is wrong in scene files, meshes and MTL files",
                             [arguments] { return run_check(*arguments); });
-  verb.positionals("files", arguments->files, "FILE...", "Scene files (.yaml), meshes or .mtl files");
+  verb.positionals("files", arguments->files, "FILE...", "Scene files (.yaml, .pov), meshes or .mtl files");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene files; may be repeated");
   verb.flag("--strict", arguments->strict, "Exit with 2 for warnings, too");
   add_limit_options(verb, arguments->limits);

@@ -106,7 +106,8 @@ class SettingList : public ParameterVisitor<SettingList> {
   bool visit(const Parameter& parameter, T& value) {
     const std::string_view key = parameter.key;
     // Tone curves are applied to the finished picture, and --size stands for both of its sides.
-    const bool left_out = key == "tone" || key == "exposure" || key == "width" || key == "height";
+    const bool left_out =
+        key == "tone" || key == "exposure" || key == "gamma" || key == "width" || key == "height";
     if (left_out) return false;
     if constexpr (requires { value.describe(*this); })
       value.describe(*this);

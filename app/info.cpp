@@ -326,7 +326,7 @@ void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
   Verb verb = line.add_verb("info", "Print what a scene file or a mesh holds",
                             [arguments] { return run_info(*arguments); });
-  verb.positional("file", arguments->file, "FILE", "Scene file (.yaml) or mesh");
+  verb.positional("file", arguments->file, "FILE", "Scene file (.yaml, .pov) or mesh");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene file; may be repeated");
   add_gltf_options(verb, arguments->gltf, false);
   add_stroke_option(verb, arguments->gltf);

@@ -42,6 +42,64 @@ static void look_at(const Camera& camera, CameraFrame& frame) {
   frame.up = cross(frame.right, frame.forward);
 }
 
+double ViewFrame::depth() const {
+  const auto unit = [](const Vec3d& v) { return normalize(v / max_component(abs(v))); };
+  return std::abs(dot(cross(unit(right), unit(up)), unit(direction)));
+}
+
+void Camera::set_frame(const ViewFrame& given) {
+  frame = given;
+  at = from + given.direction, up = given.up;
+  height = length(given.up);
+  fov = 360 / std::numbers::pi * portable::atan2(height / 2, length(given.direction));
+}
+
+/// The rotation that turns the view of one camera into that of another.
+static Affine turn_of_view(const Camera& from, const Camera& to) {
+  CameraFrame a, b;
+  look_at(from, a), look_at(to, b);
+  const auto rows = [](const Vec3d& x, const Vec3d& y, const Vec3d& z) {
+    return Affine{{{{x.x, x.y, x.z, 0}, {y.x, y.y, y.z, 0}, {z.x, z.y, z.z, 0}}}};
+  };
+  const Affine to_view = rows(a.right, a.up, a.forward);
+  const Affine from_view = rows({b.right.x, b.up.x, b.forward.x}, {b.right.y, b.up.y, b.forward.y},
+                                {b.right.z, b.up.z, b.forward.z});
+  return from_view * to_view;
+}
+
+void carry_frame(const Camera& before, Camera& after) {
+  if (!before.frame) return;
+  const auto half = [](const Camera& c) { return portable::tan(c.fov * (std::numbers::pi / 360)); };
+  const Affine turn = turn_of_view(before, after);
+  ViewFrame frame = *before.frame;
+  const bool perspective = after.projection == Projection::perspective;
+  const double wider = perspective ? half(after) / half(before) : after.height / before.height;
+  frame.right = turn.vector(frame.right) * wider, frame.up = turn.vector(frame.up) * wider;
+  frame.direction = turn.vector(frame.direction);
+  after.frame = frame;
+}
+
+/// The parts of a frame that the camera states by vectors, and the height of what is seen, at distance 1 if
+/// the camera is a perspective one.
+static double set_view(const ViewFrame& view, const Film& film, CameraFrame& frame) {
+  const bool perspective = frame.projection == Projection::perspective;
+  Vec3d away = normalize(cross(view.right, view.up));
+  if (dot(away, view.direction) < 0) away = away * -1.0;
+  frame.forward = perspective ? away : normalize(view.direction);
+  const auto across = [&](const Vec3d& v, const Vec3d& n) { return v - n * dot(v, n); };
+  frame.right = normalize(across(view.right, frame.forward));
+  frame.up = normalize(across(across(view.up, frame.forward), frame.right));
+  // The plane of the picture lies at distance 1 along the axis.
+  const double scale = perspective ? 1 / dot(away, view.direction) : 1;
+  const Vec3d right = view.right * scale, up = view.up * scale;
+  frame.per_pixel_x = right / std::max(film.width, 1u);
+  frame.per_pixel_y = up / -static_cast<double>(std::max(film.height, 1u));
+  frame.pixel_size = length(frame.per_pixel_y);
+  frame.corner = (up - right) / 2;
+  if (perspective) frame.corner += view.direction * scale;
+  return length(up);
+}
+
 /// `height` is that of what is seen, at distance 1 if the camera is a perspective one.
 static void set_lens(const Camera& camera, double height, CameraFrame& frame) {
   frame.focus = camera.focus_at     ? dot(*camera.focus_at - camera.from, frame.forward)
@@ -57,6 +115,10 @@ CameraFrame camera_frame(const Camera& camera, const Film& film) {
   CameraFrame frame;
   frame.projection = camera.projection;
   frame.origin = camera.from;
+  if (camera.frame) {
+    set_lens(camera, set_view(*camera.frame, film, frame), frame);
+    return frame;
+  }
   look_at(camera, frame);
   const bool perspective = camera.projection == Projection::perspective;
   const double height =

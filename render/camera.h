@@ -26,7 +26,8 @@ PixelWindow crop_window(const Film& film);
 /// its upper left corner; v(x, y) = corner + x per_pixel_x + y per_pixel_y. A perspective ray starts at
 /// `origin` in the direction v(x, y); an orthographic one starts at origin + v(x, y) in the direction
 /// `forward`. With a lens, the ray starts at a point of a disk about that origin, across the view axis, and
-/// meets the ray of the pinhole at the distance `focus` along the axis (Cook, Porter, Carpenter 1984).
+/// meets the ray of the pinhole at the distance `focus` along the axis (Cook, Porter, Carpenter 1984). Of a
+/// camera with a frame, `right` and `up` may be left-handed, and v(x, y) may be sheared.
 struct CameraFrame {
   Projection projection = Projection::perspective;
   Vec3d origin;
@@ -41,6 +42,10 @@ struct CameraFrame {
 /// The frame of a camera. An `up` along the view axis, or a view direction of zero, is replaced by a valid
 /// one.
 CameraFrame camera_frame(const Camera& camera, const Film& film);
+
+/// After `before` got another `from`, `at`, `up`, `fov` or `height` and became `after`: turns and widens its
+/// frame, if it has one, so that a mirrored picture stays mirrored.
+void carry_frame(const Camera& before, Camera& after);
 
 /// Film points, in columns of the same size.
 struct FilmPoints {

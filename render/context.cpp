@@ -20,7 +20,7 @@ static LightSource light_source(const Light& light) {
     source.profile = profile_of(*point);
   } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
     const auto cosine = [](double degrees) { return static_cast<float>(portable::cos(degrees * kDegree)); };
-    source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = true;
+    source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = spot->falloff;
     source.spot = spot->profile == nullptr, source.profile = profile_of(*spot);
     source.axis = Vec3f(normalize(spot->direction));
     source.cos_inner = cosine(spot->inner_angle), source.cos_outer = cosine(spot->outer_angle);

@@ -26,6 +26,9 @@ Camera camera_at(const Camera& camera, double time) {
   Camera moved = camera;
   moved.from = motion.point(camera.from), moved.at = motion.point(camera.at);
   moved.up = motion.vector(camera.up);
+  if (camera.frame)
+    moved.frame = ViewFrame{motion.vector(camera.frame->right), motion.vector(camera.frame->up),
+                            motion.vector(camera.frame->direction)};
   if (camera.focus_at) moved.focus_at = motion.point(*camera.focus_at);
   return moved;
 }

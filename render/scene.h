@@ -34,6 +34,28 @@ inline constexpr double kFilmHeight = 0.024;
 /// How a camera projects.
 enum class Projection { perspective, orthographic };
 
+/// What a camera sees, as POV-Ray has it: the middle of the picture lies in `direction`, its edges half of
+/// `right` and half of `up` away, whatever the size of the film. The vectors may be of any lengths, need not
+/// be perpendicular, and may be left-handed, which mirrors the picture.
+struct ViewFrame {
+  Vec3d right{1, 0, 0};       ///< the whole width
+  Vec3d up{0, 1, 0};          ///< the whole height
+  Vec3d direction{0, 0, -1};  ///< from the eye; of an orthographic view only the direction counts
+  bool operator==(const ViewFrame&) const = default;
+
+  /// Sine of the angle by which the view leaves the plane of `right` and `up`, less where these are nearly
+  /// parallel; 0 or not a number: nothing can be seen.
+  double depth() const;
+
+  static constexpr const char* kMap = "a frame";
+  void describe(auto& p) {
+    p.required("right", right, "the width of what is seen, to the right");
+    p.required("up", up, "the height of what is seen, upwards");
+    p.required("direction", direction, "to the middle of what is seen");
+    p.check(depth() > 1e-9, "direction", "the three vectors of the frame lie in one plane");
+  }
+};
+
 /// Looks from `from` to `at` in right-handed world space. Pixel (0, 0) is the upper left one.
 struct Camera {
   Projection projection = Projection::perspective;
@@ -49,19 +71,28 @@ struct Camera {
   double focus = 0;  ///< what is sharp lies at this distance along the view axis; 0: at the distance of `at`
   std::optional<Vec3d> focus_at{};  ///< instead of `focus`: a point in the plane that is sharp
   double shutter[2] = {0, 1};       ///< times at which it opens and closes; not descending
-  MotionPointer motion{};           ///< moves `from`, `at`, `up` and `focus_at`
+  MotionPointer motion{};           ///< moves `from`, `at`, `up`, `focus_at` and `frame`
+  /// Instead of the direction of `at`, `up`, `fov` and `height`, which set_frame makes resemble it.
+  std::optional<ViewFrame> frame{};
   bool operator==(const Camera&) const = default;
+  /// Takes a frame, as seen from `from`.
+  void set_frame(const ViewFrame& given);
 
   static constexpr Range kFieldsOfView{0, 180, true, true};
   void describe(auto& p) {
     p.field("from", from, "the eye");
-    p.field("at", at, "what it looks at");
-    p.field("up", up, "what points up in the picture; not parallel to the view");
-    p.field("fov", fov, kFieldsOfView, "perspective: full vertical angle in degrees");
+    bool is_plain = p.field("at", at, "what it looks at");
+    is_plain |= p.field("up", up, "what points up in the picture; not parallel to the view");
+    is_plain |= p.field("fov", fov, kFieldsOfView, "perspective: full vertical angle in degrees");
     p.choice("projection", projection,
              {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
              "how the camera projects");
-    p.field("height", height, kPositive, "orthographic: height of what is seen");
+    is_plain |= p.field("height", height, kPositive, "orthographic: height of what is seen");
+    if (is_plain) frame.reset();
+    ViewFrame given;
+    if (p.optional("frame", given, "instead of `at`, `up`, `fov` and `height`: what is seen, by vectors"))
+      frame = given;
+    for (const char* key : {"at", "up", "fov", "height"}) p.not_both("frame", key, nullptr, key);
     p.not_both("aperture", "f_number");
     if (p.optional("aperture", aperture, kNonNegative, "diameter of the lens; 0: all is sharp")) f_number = 0;
     if (p.optional("f_number", f_number, kPositive, "perspective: focal length over aperture")) aperture = 0;
@@ -69,7 +100,7 @@ struct Camera {
                "what is sharp: a distance along the view axis, or a point before the camera");
     p.field("shutter", shutter, "times when it opens and closes");
     p.check(shutter[0] <= shutter[1], "shutter", "the shutter closes before it opens");
-    p.optional("motion", motion, "transforms of `from`, `at`, `up` and a point in `focus`");
+    p.optional("motion", motion, "transforms of `from`, `at`, `up`, `frame` and a point in `focus`");
   }
   /// Camera::focus or Camera::focus_at.
   struct Focus {
@@ -113,6 +144,7 @@ struct Film {
     p.optional("filter_radius", filter_radius, kFilterRadii, "in pixels; by filter if it is left out");
     p.choice("tone", tone.kind, kToneKinds, "tone curve of 8-bit pictures");
     p.field("exposure", tone.exposure, kExposures, "of 8-bit pictures, in stops");
+    p.field("gamma", tone.gamma, kGammas, "of 8-bit pictures: the power of light that is shown");
     p.field("cryptomatte", cryptomatte, "mattes of objects and materials in EXR files");
   }
 };
@@ -256,8 +288,8 @@ struct PointLight {
   Vec3d down{0, -1, 0};  ///< of any length but zero
 };
 
-/// A point that emits light into a cone, which falls off as 1/r^2. From the inner to the outer angle it fades
-/// smoothly.
+/// A point that emits light into a cone, which falls off as 1/r^2 unless `falloff` is not set. From the inner
+/// to the outer angle it fades smoothly.
 struct SpotLight {
   Vec3d position;
   Vec3d direction{0, -1, 0};  ///< along the middle of the cone, of any length but zero
@@ -267,6 +299,7 @@ struct SpotLight {
   /// Instead of the angles: multiplies the intensity by direction, its axis along `direction`. May be null.
   std::shared_ptr<const LightProfile> profile = nullptr;
   double rotation = 0;  ///< of the profile: degrees about its axis
+  bool falloff = true;
 };
 
 /// Parallel light that travels along `direction`.

@@ -71,7 +71,7 @@ static Emitter emitter(const PointLight& light) {
 
 static Emitter emitter(const SpotLight& light) {
   if (light.profile != nullptr)
-    return PointEmitter{Vec3f(light.position), light.color * kIrradiance, true, profile_of(light)};
+    return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light)};
   const auto cos_outer = static_cast<float>(portable::cos(light.outer_angle * kDegree));
   const auto cos_inner = static_cast<float>(portable::cos(light.inner_angle * kDegree));
   // A sharp edge is one that fades over the least step of the cosine.
@@ -79,7 +79,8 @@ static Emitter emitter(const SpotLight& light) {
                      .axis = Vec3f(normalize(light.direction)),
                      .intensity = light.color * kIrradiance,
                      .cos_inner = std::max(cos_inner, cos_outer + 0x1p-23f),
-                     .cos_outer = cos_outer};
+                     .cos_outer = cos_outer,
+                     .falloff = light.falloff};
 }
 
 static Emitter emitter(const DirectionalLight& light) {

@@ -45,7 +45,11 @@ Vec3d neutral(Vec3d c) {
 
 Color toned(const Tone& tone, const Color& c) {
   if (tone.is_identity() || !is_finite(c)) return c;
-  const Vec3d light = Vec3d(c) * portable::exp2(tone.exposure);
+  Vec3d given(c);
+  if (tone.gamma != 1)
+    for (int k = 0; k < 3; ++k)
+      given[k] = given[k] > 0 ? portable::exp2(tone.gamma * portable::log2(given[k])) : 0;
+  const Vec3d light = given * portable::exp2(tone.exposure);
   if (tone.kind == ToneKind::srgb) return Color(light);
   const Vec3d seen{std::max(light.x, 0.0), std::max(light.y, 0.0), std::max(light.z, 0.0)};
   Vec3d shown;

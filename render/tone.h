@@ -22,13 +22,19 @@ inline constexpr Choice<ToneKind> kToneKinds[] = {{"srgb", ToneKind::srgb},
 /// Exposures that make sense, in stops.
 inline constexpr Range kExposures{-64, 64};
 
+/// Powers of light that make sense.
+inline constexpr Range kGammas{0.1, 10};
+
 /// A tone curve, and the exposure before it.
 struct Tone {
   ToneKind kind = ToneKind::srgb;
   double exposure = 0;  ///< in stops: light is multiplied by 2^exposure
+  /// Light is raised to this power first: of scenes whose numbers are meant as a screen of that gamma shows
+  /// them.
+  double gamma = 1;
   bool operator==(const Tone&) const = default;
   /// True if light stays as it is.
-  bool is_identity() const { return kind == ToneKind::srgb && exposure == 0; }
+  bool is_identity() const { return kind == ToneKind::srgb && exposure == 0 && gamma == 1; }
 };
 
 /// `c`, linear Rec.709, as `tone` shows it: still linear, in [0, 1] for all curves but ToneKind::srgb.

@@ -95,6 +95,7 @@ void set(std::string_view key, std::string_view text, ViewState& state) {
 }  // namespace
 
 ViewState parse_view(std::string_view text, ViewState state) {
+  const Camera before = state.camera;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -103,18 +104,25 @@ ViewState parse_view(std::string_view text, ViewState state) {
     set(line.substr(0, sign), line.substr(sign + 1), state);
   }
   check(state.camera);
+  const Camera& now = state.camera;
+  const bool moved = !(now.from == before.from && now.at == before.at && now.up == before.up &&
+                       now.fov == before.fov && now.height == before.height);
+  if (moved) carry_frame(before, state.camera);
   return state;
 }
 
 std::string camera_yaml(Camera c, const Vec3d& origin) {
   c.from = origin + c.from, c.at = origin + c.at;
   if (c.focus_at) c.focus_at = origin + *c.focus_at;
-  std::string out = fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", list_text(c.from),
-                                list_text(c.at), list_text(c.up));
-  if (c.projection == Projection::orthographic)
-    out += fmt::format("  projection: orthographic\n  height: {}\n", c.height);
+  std::string out = fmt::format("camera:\n  from: {}\n", list_text(c.from));
+  const bool perspective = c.projection == Projection::perspective;
+  if (!c.frame) out += fmt::format("  at: {}\n  up: {}\n", list_text(c.at), list_text(c.up));
+  if (!perspective) out += "  projection: orthographic\n";
+  if (c.frame)
+    out += fmt::format("  frame: {{right: {}, up: {}, direction: {}}}\n", list_text(c.frame->right),
+                       list_text(c.frame->up), list_text(c.frame->direction));
   else
-    out += fmt::format("  fov: {}\n", c.fov);
+    out += perspective ? fmt::format("  fov: {}\n", c.fov) : fmt::format("  height: {}\n", c.height);
   if (c.f_number > 0)
     out += fmt::format("  f_number: {}\n", c.f_number);
   else if (c.aperture > 0)

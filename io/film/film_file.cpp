@@ -24,6 +24,8 @@ namespace oktett {
 
 namespace {
 
+/// Beside the kind of the tone curve.
+constexpr unsigned kHasGamma = 128;
 constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16, kHasOrigin = 32,
                    kCatchers = 64;
 
@@ -109,11 +111,14 @@ void take_window(ByteReader& reader, FilmFormat& format) {
 }
 
 Tone take_tone(ByteReader& reader) {
-  const auto kind = reader.number<std::uint8_t>();
+  const auto first = reader.number<std::uint8_t>();
+  const unsigned kind = first & ~kHasGamma;
   const auto exposure = reader.number<double>();
+  const double gamma = (first & kHasGamma) != 0 ? reader.number<double>() : 1;
+  if (!(gamma >= kGammas.lo && gamma <= kGammas.hi)) throw Error("its gamma is unknown");
   if (kind >= std::size(kToneKinds) || !std::isfinite(exposure) || !kExposures.contains(exposure))
     throw Error("its tone curve is unknown");
-  return {static_cast<ToneKind>(kind), exposure};
+  return {static_cast<ToneKind>(kind), exposure, gamma};
 }
 
 }  // namespace
@@ -131,8 +136,11 @@ static std::string film_header(const FilmFile& file, std::uint32_t tiles) {
   append_number(bytes, static_cast<std::uint8_t>(flags));
   append_window(bytes, plan.format);
   const Tone tone = film.tone();
-  append_number(bytes, static_cast<std::uint8_t>(tone.kind));
+  const bool has_gamma = tone.gamma != 1;
+  append_number(bytes,
+                static_cast<std::uint8_t>(static_cast<unsigned>(tone.kind) | (has_gamma ? kHasGamma : 0u)));
   append_number(bytes, tone.exposure);
+  if (has_gamma) append_number(bytes, tone.gamma);
   for (const std::uint32_t x : {plan.samples, film.added(), film.share().number, film.share().count, tiles})
     append_number(bytes, x);
   append_texts(bytes, plan.format.light_groups);

@@ -9,8 +9,8 @@
 #include "io/obj/obj.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
-#include "io/scene/utf8.h"
 #include "io/text/files.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 namespace {
@@ -24,7 +24,7 @@ class Checking {
     const std::string extension = lower_case_extension(path_);
     if (const std::string reason = why_unreadable(path_); !reason.empty())
       add(Error(Location{path_}, reason, ErrorKind::io));
-    else if (extension == ".yaml" || extension == ".yml")
+    else if (extension == ".yaml" || extension == ".yml" || extension == ".pov")
       check_scene();
     else if (extension == ".mtl")
       attempt([&] { check_materials(); });

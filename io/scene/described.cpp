@@ -4,7 +4,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 #include "kernels/exact/polynomial_expression.h"
 #include "kernels/fractals/ifs.h"
 #include "kernels/functions/function_tape.h"

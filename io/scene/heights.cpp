@@ -10,7 +10,7 @@
 #include "io/scene/exact.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 #include "kernels/functions/tape_data.h"
 #include "kernels/heights/height_grid.h"
 

@@ -14,7 +14,7 @@
 #include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 #include "render/light_groups.h"
 #include "render/moments.h"
 
@@ -110,6 +110,14 @@ struct EmitterColor {
   }
 };
 
+/// Throws Error if the light does not fall off, but has what only light has that does.
+void check_falloff(const Fields& fields, const auto& light) {
+  if (light.falloff || (!fields["intensity"] && !fields["power"])) return;
+  throw Error(fields["falloff"]->where(),
+              fmt::format("'{}' is that of a light that falls off; expected 'falloff: true', or 'color'",
+                          fields["power"] ? "power" : "intensity"));
+}
+
 struct PointKeys {
   PointLight light{};
   EmitterColor<PointLight> color{};
@@ -132,10 +140,7 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode&, PointKeys& k
   // An intensity means light that falls off.
   const bool falls_off = fields["intensity"] || fields["power"];
   if (!fields["falloff"]) light.falloff = falls_off || fields["profile"];
-  if (!light.falloff && falls_off)
-    throw Error(fields["falloff"]->where(),
-                fmt::format("'{}' is that of a light that falls off; expected 'falloff: true', or 'color'",
-                            fields["power"] ? "power" : "intensity"));
+  check_falloff(fields, light);
   add_light(load, light, keys.traits);
 }
 
@@ -151,6 +156,7 @@ struct SpotKeys {
     describe_direction(p, "direction", light.direction, "along the middle of the cone");
     p.optional("at", at, "instead of `direction`: a point there");
     color.describe_color(p, light);
+    p.field("falloff", light.falloff, "divides by the squared distance");
     p.optional("inner_angle", light.inner_angle, Range{0, 180},
                "where light begins to fade; 3/4 of the outer one if left out");
     p.field("outer_angle", light.outer_angle, Range{0, 180, true},
@@ -172,6 +178,7 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, SpotKey
   if (!fields["inner_angle"]) light.inner_angle = 0.75 * light.outer_angle;
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
+  check_falloff(fields, light);
   keys.color.finish(fields, light);
   add_light(load, light, keys.traits);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 

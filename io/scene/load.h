@@ -68,11 +68,13 @@ struct NestedPattern {
 };
 
 struct SceneLoad {
-  explicit SceneLoad(const Definitions& definitions) : parameters(definitions), values(parameters) {}
+  explicit SceneLoad(const Definitions& given) : definitions(given), parameters(given), values(parameters) {}
   SceneLoad(const SceneLoad&) = delete;
   SceneLoad& operator=(const SceneLoad&) = delete;
 
   Scene scene;
+  const Definitions definitions;
+  Film pov_film = kPovFilm;  ///< the size that a scene in POV-Ray's language finds
   SceneParameters parameters;
   SceneValues values;
   MeshLibrary meshes;

@@ -10,7 +10,7 @@
 #include "io/mesh/reading.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
 #include "render/geometry.h"

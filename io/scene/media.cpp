@@ -7,9 +7,9 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
 #include "io/volume/density_file.h"
 #include "io/volume/vdb_file.h"
+#include "io/yaml/utf8.h"
 #include "render/medium/density_noise.h"
 
 namespace oktett {

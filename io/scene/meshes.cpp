@@ -133,6 +133,17 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, const MeshO
   return entry;
 }
 
+void MeshLibrary::add(const std::string& name, std::shared_ptr<const TriangleMesh> mesh) {
+  Entry& entry = entries_[{name, false}];
+  entry.mesh = std::move(mesh);
+  entry_of_[entry.mesh.get()] = &entry;
+}
+
+const MeshLibrary::Entry* MeshLibrary::find(const std::string& name) const {
+  const auto found = entries_.find({name, false});
+  return found == entries_.end() ? nullptr : &found->second;
+}
+
 const MeshLibrary::Entry& MeshLibrary::entry_of(const TriangleMesh& mesh) const {
   return *entry_of_.at(&mesh);
 }

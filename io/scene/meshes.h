@@ -45,6 +45,11 @@ class MeshLibrary {
   /// appended to `scene`. Throws Error as load_mesh does.
   const Entry& load(const std::string& path, const MeshOptions& options, Scene& scene);
 
+  /// Adds a mesh without a file, which scene files of its scene refer to by a name.
+  void add(const std::string& name, std::shared_ptr<const TriangleMesh> mesh);
+  /// The one of this name; null if there is none.
+  const Entry* find(const std::string& name) const;
+
   /// What was loaded with this mesh.
   const Entry& entry_of(const TriangleMesh& mesh) const;
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/scene/utf8.h"
 #include "io/scene/values.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 

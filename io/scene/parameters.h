@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/scene/scene_file.h"
-#include "io/scene/yaml.h"
+#include "io/yaml/yaml.h"
 
 namespace oktett {
 

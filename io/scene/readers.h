@@ -10,7 +10,7 @@
 
 #include "core/description.h"
 #include "io/scene/load.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 

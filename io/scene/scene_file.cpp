@@ -16,13 +16,15 @@
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/reading.h"
 #include "io/ply/ply.h"
+#include "io/pov/translate/translate.h"
 #include "io/scene/meshes.h"
+#include "io/scene/pov_scene.h"
 #include "io/scene/readers.h"
-#include "io/scene/scene_limits.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
-#include "io/scene/yaml.h"
 #include "io/text/files.h"
+#include "io/yaml/scene_limits.h"
+#include "io/yaml/utf8.h"
+#include "io/yaml/yaml.h"
 #include "render/look/default_look.h"
 #include "render/look/up_direction.h"
 #include "render/recentre.h"
@@ -191,7 +193,8 @@ class FileReader {
   void read(const std::string& path) {
     chain_.push_back({path, canonical_path(path)});
     seen_.push_back(chain_.back().canonical);
-    if (!attempt(load_.errors, [&] { read_file(path); })) load_.miss_definitions();
+    const bool pov = is_pov_file(path);
+    if (!attempt(load_.errors, [&] { pov ? read_pov(path) : read_file(path); })) load_.miss_definitions();
     chain_.pop_back();
   }
 
@@ -212,6 +215,15 @@ class FileReader {
     parse_yaml(file, kMaxSceneNodes - nodes_);
     nodes_ += file.expanded_nodes;
     read_sections(*file.root);
+  }
+
+  /// A scene in POV-Ray's language.
+  void read_pov(const std::string& path) {
+    pov::TranslatedScene translated = read_pov_tree(path, load_.definitions, load_.pov_film);
+    for (const std::unique_ptr<YamlFile>& file : translated.files) file->errors = load_.errors;
+    for (const auto& [name, mesh] : translated.meshes) load_.meshes.add(name, mesh);
+    for (const Warning& warning : translated.warnings) load_.warn(warning.where, warning.message);
+    read_sections(*translated.root);
   }
 
   void read_sections(const YamlNode& root) {
@@ -317,12 +329,15 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   warn_of_energy(load.scene);
   warn_of_attributes(load.scene);
   warn_of_insides(load.scene);
+  if (is_pov_file(path)) return;
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 
 static Scene load_scene_file(const std::string& path, const Definitions& definitions,
-                             std::optional<IntegratorKind> integrator, const GltfOptions& gltf) {
+                             std::optional<IntegratorKind> integrator, const GltfOptions& gltf,
+                             const Film& pov_film = kPovFilm) {
   SceneLoad load(definitions);
+  load.pov_film = pov_film;
   load.gltf = gltf;
   load.integrator = integrator;
   read_scene_file(path, load);
@@ -409,14 +424,14 @@ Scene load_scene(const std::string& path, const Definitions& definitions) {
 }
 
 Scene load_scene(const std::string& path, const Definitions& definitions,
-                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf) {
+                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf, const Film& pov_film) {
   expect_readable(path);
   const std::string extension = lower_case_extension(path);
-  if (extension == ".yaml" || extension == ".yml")
-    return load_scene_file(path, definitions, integrator, gltf);
+  if (extension == ".yaml" || extension == ".yml" || is_pov_file(path))
+    return load_scene_file(path, definitions, integrator, gltf, pov_film);
   if (!is_mesh_file(path))
     throw Error(Location{path, 0, 0},
-                std::string("unknown kind of file; expected a scene (.yaml, .yml) or a mesh (") +
+                std::string("unknown kind of file; expected a scene (.yaml, .yml, .pov) or a mesh (") +
                     mesh_extensions() + ")");
   Scene scene = scene_from_mesh(path, gltf);
   if (integrator) scene.integrator.kind = *integrator;

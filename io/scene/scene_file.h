@@ -23,12 +23,21 @@ Scene load_scene_file(const std::string& path, const Definitions& definitions = 
 /// Throws Error as load_obj does.
 Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf = {});
 
-/// Calls load_scene_file for .yaml and .yml, scene_from_mesh for mesh files; throws Error for any other
-/// extension.
+/// The film of scenes in POV-Ray's language, which have none: that of the form of their usual camera.
+inline const Film kPovFilm = [] {
+  Film film;
+  film.width = 800, film.height = 600;
+  return film;
+}();
+
+/// Calls load_scene_file for .yaml and .yml, reads .pov in POV-Ray's language, and calls scene_from_mesh for
+/// mesh files; throws Error for any other extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
 /// The same with another integrator, if it is given, which is also what is warned of. `gltf`: what is shown
 /// of the glTF file that `path` names, or of those that a scene file includes; throws Error for other meshes.
+/// `pov_film`: the size that a scene in POV-Ray's language finds.
 Scene load_scene(const std::string& path, const Definitions& definitions,
-                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf = {});
+                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf = {},
+                 const Film& pov_film = kPovFilm);
 
 }  // namespace oktett

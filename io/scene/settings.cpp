@@ -74,7 +74,10 @@ std::string schema_of(Schema&, const Range&, const Camera::Focus&) {
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& camera) {
   load.scene.camera_given = true;
   const Fields fields = read_described(load, node, "camera", camera);
-  check_view(camera, node);
+  if (camera.frame)
+    camera.set_frame(*camera.frame);
+  else
+    check_view(camera, node);
   check_lens(fields, node, camera);
   const bool perspective = camera.projection == Projection::perspective;
   load.warn_if_unused(fields, "fov", !perspective, "an orthographic view has a 'height'");

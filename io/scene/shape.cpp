@@ -6,7 +6,7 @@
 #include "io/scene/exact.h"
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 namespace {
@@ -28,6 +28,10 @@ const MeshLibrary::Entry& load_file(SceneLoad& load, const std::string& path, co
 /// object.
 bool finish(const ShapeNode& at, MeshShape& shape) {
   const YamlNode& file = at.fields.require("file");
+  if (const MeshLibrary::Entry* const given = at.load.meshes.find(at.load.values.text(file))) {
+    shape.mesh = given->mesh;
+    return true;
+  }
   const std::string path = at.load.values.existing_file(file);
   if (!is_mesh_file(path))
     throw Error(file.where(), std::string("unknown kind of mesh file; expected ") + mesh_extensions());

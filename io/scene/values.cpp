@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/precise_math.h"
-#include "io/scene/utf8.h"
 #include "io/text/files.h"
+#include "io/yaml/utf8.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett {

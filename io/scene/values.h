@@ -12,9 +12,9 @@
 
 #include "core/description.h"
 #include "core/vec3.h"
-#include "io/scene/error_list.h"
 #include "io/scene/parameters.h"
-#include "io/scene/yaml.h"
+#include "io/yaml/error_list.h"
+#include "io/yaml/yaml.h"
 
 namespace oktett {
 

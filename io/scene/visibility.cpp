@@ -8,7 +8,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 

@@ -15,6 +15,7 @@
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/unlocked.h"
+#include "render/camera.h"
 #include "render/recentre.h"
 
 namespace oktett::python {
@@ -38,6 +39,7 @@ void override_camera(const py::dict& camera, Scene& scene) {
   // The default of a scene without a camera counts from (0, 0, 0).
   if (!scene.camera_given)
     scene.camera.from = scene.camera.from - scene.origin, scene.camera.at = scene.camera.at - scene.origin;
+  const Camera before = scene.camera;
   for (const auto& [key, value] : camera) {
     const auto name = key.cast<std::string>();
     const std::string what = "camera['" + name + "']";
@@ -54,6 +56,7 @@ void override_camera(const py::dict& camera, Scene& scene) {
                             did_you_mean(name, std::vector<std::string>{"from", "at", "up", "fov"},
                                          "expected from, at, up, fov"));
   }
+  if (camera.size() > 0) carry_frame(before, scene.camera);
   // Without a place the scene is framed.
   if (camera.contains("from")) scene.camera_given = true;
 }

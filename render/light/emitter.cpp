@@ -210,6 +210,7 @@ static std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
 }
 
 static std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
+  if (!e.falloff) return std::nullopt;
   const double inner = portable::acos(std::clamp(double{e.cos_inner}, -1.0, 1.0));
   const double outer = portable::acos(std::clamp(double{e.cos_outer}, -1.0, 1.0));
   const double spread = std::max(std::min(inner, outer), outer - std::numbers::pi / 2);
@@ -335,6 +336,7 @@ double distant_irradiance(const Emitter& emitter) {
     return e->map && e->map->samples() ? std::numbers::pi * e->map->mean_radiance() : 0;
   if (const auto* e = std::get_if<DirectionalEmitter>(&emitter)) return color_weight(e->irradiance);
   if (const auto* e = std::get_if<PointEmitter>(&emitter)) return e->falloff ? 0 : color_weight(e->intensity);
+  if (const auto* e = std::get_if<SpotEmitter>(&emitter)) return e->falloff ? 0 : color_weight(e->intensity);
   return 0;
 }
 

@@ -87,6 +87,7 @@ struct SpotEmitter {
   Color intensity;
   float cos_inner = 1;  ///< cosine of the angle to the axis up to which the intensity is full
   float cos_outer = 0;  ///< cosine of the angle beyond which it is dark, < cos_inner
+  bool falloff = true;  ///< as of PointEmitter
 };
 
 /// Light from infinitely far away: from one direction, or from a disk in the sky.

@@ -18,7 +18,7 @@ struct LightCone {
   bool falls_off;  ///< with the square of the distance
 };
 inline LightCone light_cone(const SpotEmitter& e) {
-  return {e.position, e.axis, e.cos_inner, e.cos_outer, true};
+  return {e.position, e.axis, e.cos_inner, e.cos_outer, e.falloff};
 }
 inline LightCone light_cone(const PointEmitter& e) { return {e.position, {0, 0, 0}, -2, -3, e.falloff}; }
 

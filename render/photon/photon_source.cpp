@@ -237,7 +237,7 @@ struct NearWeight {
     return e.falloff ? color_weight(e.intensity) * Cone(Vec3d(e.position), target).solid_angle() : 0;
   }
   double operator()(const SpotEmitter& e) const {
-    return color_weight(e.intensity) * cone_of(e, target).solid_angle();
+    return e.falloff ? color_weight(e.intensity) * cone_of(e, target).solid_angle() : 0;
   }
   double operator()(const DirectionalEmitter&) const { return 0; }
   double operator()(const EnvironmentEmitter&) const { return 0; }

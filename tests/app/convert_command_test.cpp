@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
@@ -52,6 +54,30 @@ TEST(ConvertCommand, WrongWordsAndFilesAreOneLine) {
   expect("no.obj", "b.ply", 1, "no.obj: cannot read: No such file or directory\n");
   expect("a.obj", "./a.obj", 2, "./a.obj: is the input, too\n");
   EXPECT_EQ(test::file_count(dir), 1u);
+}
+
+TEST(ConvertCommand, ScenesOfPovRayBecomeSceneFiles) {
+  const TempDir dir;
+  dir.write("a.pov",
+            "#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { location -5*z right x up y }\n"
+            "background { rgb <0, 0, 1> }\nmesh { triangle { -x, x, y } pigment { rgb Shade } finish { "
+            "ambient 1 diffuse 0 } }\n");
+  const CommandResult result = run_command(dir, {"convert", "a.pov", "b.yaml", "-D", "Shade=0.5"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "wrote b-mesh.ply\nwrote b.yaml\n");
+  EXPECT_TRUE(contains(file_content(dir.file("b.yaml")), "color: [0.5, 0.5, 0.5]"));
+  for (const auto& [scene, picture] : {std::pair{"a.pov", "a.png"}, {"b.yaml", "b.png"}}) {
+    std::vector<std::string> words{"render", scene, "-o", picture, "--size", "16x16", "--quiet"};
+    if (std::string(scene) == "a.pov") words.insert(words.end(), {"-D", "Shade=0.5"});
+    EXPECT_EQ(run_command(dir, words).status, 0) << scene;
+  }
+  const auto pixels = [&](const char* name) {
+    const std::string bytes = file_content(dir.file(name));
+    return bytes.substr(bytes.find("IDAT"));
+  };
+  EXPECT_EQ(pixels("a.png"), pixels("b.png"));
+  EXPECT_EQ(run_command(dir, {"convert", "a.pov", "b.obj", "-D", "Shade=1"}).err,
+            "b.obj: a .pov becomes a scene file; expected the output .yaml or .yml\n");
 }
 
 }  // namespace

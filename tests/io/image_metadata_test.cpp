@@ -42,6 +42,30 @@ TEST(CameraMatrices, MapTheFrustumToTheUnitSquare) {
   EXPECT_NEAR(corner.y, 0, 1e-6);
 }
 
+TEST(CameraMatrices, MapTheFrameToTheUnitSquare) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Camera camera;
+    camera.projection = projection, camera.from = {1, 2, 8};
+    const ViewFrame view{{-2, 0, 0.5}, {0.25, 1.5, 0}, {0.5, 0.25, -2}};
+    camera.set_frame(view);
+    const auto m = camera_matrices(camera, 200, 100);
+    ASSERT_TRUE(m);
+    const bool perspective = projection == Projection::perspective;
+    for (const double x : {0.0, 0.3, 1.0})
+      for (const double y : {0.0, 0.6, 1.0}) {
+        const Vec3d across = view.right * (x - 0.5) + view.up * (0.5 - y);
+        const Vec3d p =
+            camera.from + (perspective ? (view.direction + across) * 3.0 : across + view.direction);
+        const Vec3d found = project(m->world_to_ndc, p);
+        EXPECT_NEAR(found.x, x, 1e-5);
+        EXPECT_NEAR(found.y, y, 1e-5);
+      }
+    // The first axis of the camera is that of the picture.
+    EXPECT_GT(project(m->world_to_camera, camera.from + view.direction + view.right * 0.1).x,
+              project(m->world_to_camera, camera.from + view.direction).x);
+  }
+}
+
 TEST(CameraMatrices, DegenerateCamerasGiveNoneOrAnyRoll) {
   Camera camera;
   camera.at = camera.from;

@@ -50,6 +50,29 @@ TEST(SceneFile, ReadsSettings) {
   EXPECT_EQ(scene.ambient_light, (Color{1, 1, 1}));
 }
 
+TEST(SceneFile, CameraHasAFrame) {
+  const SceneFiles files;
+  const Camera camera =
+      files
+          .load_v1(
+              "camera: {from: [1, 2, 3], frame: {right: [4, 0, 0], up: [0, 2, 0], direction: [0, 0, 1]}}")
+          .camera;
+  ASSERT_TRUE(camera.frame);
+  EXPECT_EQ(*camera.frame, (ViewFrame{{4, 0, 0}, {0, 2, 0}, {0, 0, 1}}));
+  // What looks for the plain keys finds the same view.
+  EXPECT_EQ(camera.at, (Vec3d{1, 2, 4}));
+  EXPECT_EQ(camera.height, 2);
+  EXPECT_NEAR(camera.fov, 90, 1e-9);
+  test::expect_errors(
+      {{"camera: {frame: {right: [4, 0, 0], up: [0, 2, 0]}}", "scene.yaml:2:17: a frame needs 'direction'"},
+       {"camera: {frame: {right: [4, 0, 0], up: [0, 2, 0], direction: [1, 1, 0]}}",
+        "scene.yaml:2:62: the three vectors of the frame lie in one plane"},
+       {"camera: {frame: {right: [0, 0, 0], up: [0, 2, 0], direction: [1, 1, 0]}}",
+        "scene.yaml:2:62: the three vectors of the frame lie in one plane"},
+       {"camera: {fov: 3, frame: {right: [4, 0, 0], up: [0, 2, 0], direction: [0, 0, 1]}}",
+        "scene.yaml:2:15: expected 'frame' or 'fov', not both"}});
+}
+
 TEST(SceneFile, ReadsCaustics) {
   const auto read = [](const std::string& text) {
     return SceneFiles().load_v1("integrator: {kind: path" + text + "}\n").integrator.caustics;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "io/scene/scene_limits.h"
-#include "io/scene/yaml.h"
+#include "io/yaml/scene_limits.h"
+#include "io/yaml/yaml.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::scene_gallery_test {

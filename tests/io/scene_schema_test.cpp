@@ -12,8 +12,8 @@
 #include <regex>
 #include <string>
 
-#include "io/scene/scene_limits.h"
-#include "io/scene/yaml.h"
+#include "io/yaml/scene_limits.h"
+#include "io/yaml/yaml.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett::scene_schema_test {

@@ -51,6 +51,62 @@ TEST(Camera, OrthographicRaysAreParallel) {
   EXPECT_NEAR(length(corner.origin - Vec3f{-4, 2, 5}), 0, 1e-6f);
 }
 
+TEST(Camera, AFrameFillsThePictureWhateverItsForm) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Camera camera;
+    camera.projection = projection, camera.from = {1, 2, 3};
+    // Sheared and left-handed.
+    const ViewFrame view{{2, 0, 0.5}, {0.25, 1.5, 0}, {0.5, 0.25, 3}};
+    camera.set_frame(view);
+    for (const Film& f : {film(200, 100), film(30, 90)}) {
+      const CameraFrame frame = camera_frame(camera, f);
+      for (const double x : {0.0, 0.5, 1.0})
+        for (const double y : {0.0, 0.5, 1.0}) {
+          const Ray ray = camera_ray(frame, x * f.width, y * f.height);
+          const Vec3d across = view.right * (x - 0.5) + view.up * (0.5 - y);
+          const bool perspective = projection == Projection::perspective;
+          const Vec3d origin = camera.from + (perspective ? Vec3d{} : across);
+          const Vec3d direction = perspective ? view.direction + across : view.direction;
+          EXPECT_LT(length(Vec3d(ray.origin) - origin), 1e-6);
+          EXPECT_LT(length(Vec3d(ray.direction) - normalize(direction)), 1e-6);
+        }
+      EXPECT_NEAR(dot(frame.right, frame.up), 0, 1e-12);
+      EXPECT_NEAR(dot(frame.right, frame.forward), 0, 1e-12);
+    }
+  }
+}
+
+TEST(Camera, AFrameThatSaysTheSameGivesTheSameRays) {
+  Camera plain;
+  plain.from = {1, 2, 3}, plain.at = {0, 0, -1}, plain.fov = 50;
+  const Film f = film(80, 40);
+  const CameraFrame expected = camera_frame(plain, f);
+  const double height = 2 * std::tan(25 * std::numbers::pi / 180);
+  Camera framed = plain;
+  framed.set_frame({expected.right * (2 * height), expected.up * height, expected.forward});
+  EXPECT_NEAR(framed.fov, 50, 1e-9);
+  const CameraFrame found = camera_frame(framed, f);
+  for (int i = 0; i < 20; ++i) {
+    const double x = 4.1 * i, y = 39 - 1.9 * i;
+    EXPECT_LT(length(camera_ray(expected, x, y).direction - camera_ray(found, x, y).direction), 1e-6f);
+  }
+  EXPECT_NEAR(found.pixel_size, expected.pixel_size, 1e-12);
+  EXPECT_NEAR(camera_depth(found, {5, 5, -1}), camera_depth(expected, {5, 5, -1}), 1e-9);
+}
+
+TEST(Camera, AFrameFollowsTheView) {
+  Camera before;
+  before.from = {0, 0, -5};
+  before.set_frame({{2, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  Camera after = before;
+  after.from = {5, 0, 0}, after.at = {0, 0, 0};
+  carry_frame(before, after);
+  // Still left-handed.
+  EXPECT_LT(length(after.frame->direction - Vec3d{-1, 0, 0}), 1e-9);
+  EXPECT_LT(length(after.frame->right - Vec3d{0, 0, 2}), 1e-9);
+  EXPECT_LT(length(after.frame->up - Vec3d{0, 1, 0}), 1e-9);
+}
+
 TEST(Camera, OddViewsStillGiveRays) {
   for (const Vec3d& up : {Vec3d{0, 0, 1}, Vec3d{0, 0, 0}, Vec3d{0, 0, -3}})
     for (const Vec3d& from : {Vec3d{0, 0, 5}, Vec3d{0, 0, 0}}) {
@@ -84,21 +140,23 @@ TEST(Crop, FractionsThatMeetTileTheFrame) {
 
 // The camera footprint is the difference of the hit points of neighbouring pixels' rays.
 TEST(Camera, FootprintReachesTheNeighboursHitPoints) {
-  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-    Camera camera;
-    camera.projection = projection;
-    camera.from = {1, 3, 4};
-    const CameraFrame frame = camera_frame(camera, film(64, 48));
-    const Vec3f n{0, 1, 0};
-    const auto ground = [&](double x, double y) {
-      const Ray r = camera_ray(frame, x, y);
-      return r.origin + r.direction * (-r.origin.y / r.direction.y);
-    };
-    Vec3f dx, dy;
-    pixel_footprint(frame, camera_ray(frame, 20, 30), ground(20, 30), n, dx, dy);
-    EXPECT_LT(length(dx - (ground(21, 30) - ground(20, 30))), 1e-4f);
-    EXPECT_LT(length(dy - (ground(20, 31) - ground(20, 30))), 1e-4f);
-  }
+  for (const bool framed : {false, true})
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+      Camera camera;
+      camera.projection = projection;
+      camera.from = {1, 3, 4};
+      if (framed) camera.set_frame({{-1, 0, 0.2}, {0, 0.9, 0}, {-0.3, -1, -1.2}});
+      const CameraFrame frame = camera_frame(camera, film(64, 48));
+      const Vec3f n{0, 1, 0};
+      const auto ground = [&](double x, double y) {
+        const Ray r = camera_ray(frame, x, y);
+        return r.origin + r.direction * (-r.origin.y / r.direction.y);
+      };
+      Vec3f dx, dy;
+      pixel_footprint(frame, camera_ray(frame, 20, 30), ground(20, 30), n, dx, dy);
+      EXPECT_LT(length(dx - (ground(21, 30) - ground(20, 30))), 1e-4f);
+      EXPECT_LT(length(dy - (ground(20, 31) - ground(20, 30))), 1e-4f);
+    }
 }
 
 RC_GTEST_PROP(DefaultView, CutsNothingOff, ()) {

@@ -1,4 +1,4 @@
-#include "io/scene/error_list.h"
+#include "io/yaml/error_list.h"
 
 namespace oktett {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/scene/yaml.h"
+#include "io/yaml/yaml.h"
 
 namespace oktett {
 

@@ -1,4 +1,4 @@
-#include "io/scene/yaml.h"
+#include "io/yaml/yaml.h"
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -12,11 +12,11 @@
 #include <unordered_set>
 #include <utility>
 
-#include "io/scene/error_list.h"
-#include "io/scene/scene_limits.h"
-#include "io/scene/utf8.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"
+#include "io/yaml/error_list.h"
+#include "io/yaml/scene_limits.h"
+#include "io/yaml/utf8.h"
 
 namespace oktett {
 namespace {

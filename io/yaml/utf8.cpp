@@ -1,4 +1,4 @@
-#include "io/scene/utf8.h"
+#include "io/yaml/utf8.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,0 +1,139 @@
+#include "io/pov/translate/extent.h"
+
+#include <algorithm>
+#include <array>
+
+namespace oktett::pov {
+
+bool Extent::is_finite() const {
+  return std::isfinite(lo.x + lo.y + lo.z + hi.x + hi.y + hi.z) && lo.x <= hi.x && lo.y <= hi.y &&
+         lo.z <= hi.z;
+}
+
+Extent Extent::meet(const Extent& o) const {
+  Extent out;
+  for (int k = 0; k < 3; ++k) out.lo[k] = std::max(lo[k], o.lo[k]), out.hi[k] = std::min(hi[k], o.hi[k]);
+  return out;
+}
+
+Extent Extent::join(const Extent& o) const {
+  Extent out;
+  for (int k = 0; k < 3; ++k) out.lo[k] = std::min(lo[k], o.lo[k]), out.hi[k] = std::max(hi[k], o.hi[k]);
+  return out;
+}
+
+Extent Extent::moved(const Affine& map) const {
+  if (!is_finite()) return {};
+  Extent out{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p = map.point({corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z});
+    out = out.join({p, p});
+  }
+  return out;
+}
+
+bool is_object(std::string_view keyword) {
+  constexpr std::array<std::string_view, 34> kObjects{
+      "sphere", "box",           "cylinder",       "cone",       "plane",
+      "disc",   "torus",         "quadric",        "cubic",      "quartic",
+      "poly",   "polynomial",    "superellipsoid", "blob",       "lathe",
+      "sor",    "prism",         "polygon",        "triangle",   "smooth_triangle",
+      "mesh",   "mesh2",         "height_field",   "isosurface", "julia_fractal",
+      "text",   "bicubic_patch", "sphere_sweep",   "parametric", "object",
+      "union",  "merge",         "intersection",   "difference"};
+  return std::ranges::find(kObjects, keyword) != kObjects.end();
+}
+
+bool has_word(const Block& block, std::string_view word) {
+  return std::ranges::any_of(block.elements, [&](const Element& e) {
+    const auto* const found = std::get_if<Word>(&e.value);
+    return found != nullptr && found->text == word;
+  });
+}
+
+namespace {
+
+Extent around(const Vec3d& center, double radius) {
+  const Vec3d r{std::abs(radius), std::abs(radius), std::abs(radius)};
+  return {center - r, center + r};
+}
+
+/// What the shape itself says, with its arguments taken.
+Extent shape_extent(Context& context, Arguments& a) {
+  const std::string_view kind = a.block().keyword;
+  const Extent nothing{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  if (kind == "sphere") {
+    const Vec3d center = a.vector("a point");
+    return around(center, a.number("a radius"));
+  }
+  if (kind == "box") {
+    const Vec3d p = a.vector("a point"), q = a.vector("a point");
+    return Extent{p, p}.join({q, q});
+  }
+  if (kind == "cylinder" || kind == "cone") {
+    const Vec3d p = a.vector("a point");
+    const double r = kind == "cone" ? a.number("a radius") : 0;
+    const Vec3d q = a.vector("a point");
+    const double s = a.number("a radius");
+    return around(p, kind == "cone" ? r : s).join(around(q, s));
+  }
+  if (kind == "torus") {
+    const double major = a.number("a radius"), minor = a.number("a radius"), r = major + minor;
+    return {{-r, -minor, -r}, {r, minor, r}};
+  }
+  if (kind == "superellipsoid") {
+    a.pair("two exponents");
+    return {{-1, -1, -1}, {1, 1, 1}};
+  }
+  if (kind == "height_field") return {{0, 0, 0}, {1, 1, 1}};
+  if (kind == "union" || kind == "merge" || kind == "object" || kind == "intersection" ||
+      kind == "difference" || kind == "clipped_by" || kind == "bounded_by") {
+    Extent all = kind == "intersection" ? Extent{} : nothing;
+    for (bool first = true; const Block* const inner = a.peek_block(); first = false) {
+      if (!is_object(inner->keyword)) break;
+      if (kind == "intersection")
+        all = all.meet(extent_of(context, *inner));
+      else if (first || kind != "difference")
+        all = all.join(extent_of(context, *inner));
+      a.take();
+    }
+    return all;
+  }
+  return {};
+}
+
+}  // namespace
+
+Extent extent_of(Context& context, const Block& block) {
+  Arguments a(context, block);
+  Extent extent = shape_extent(context, a);
+  if (has_word(block, "inverse")) extent = {};
+  while (!a.at_end()) {
+    Moves move;
+    if (take_moves(context, a, move)) {
+      extent = extent.moved(move.all);
+      continue;
+    }
+    const Block* const inner = a.peek_block();
+    if (inner != nullptr && inner->keyword == "clipped_by") extent = extent.meet(extent_of(context, *inner));
+    a.take();
+  }
+  return extent;
+}
+
+Extent limits_of(Context& context, const Block& block) {
+  Extent limits;
+  Arguments a(context, block);
+  Moves moves;
+  while (!a.at_end()) {
+    if (take_moves(context, a, moves)) continue;
+    const Block* const inner = a.peek_block();
+    a.take();
+    if (inner == nullptr || (inner->keyword != "clipped_by" && inner->keyword != "bounded_by")) continue;
+    const Extent e = extent_of(context, *inner);
+    if (moves.all.is_invertible() && e.is_finite()) limits = limits.meet(e.moved(moves.all.inverse()));
+  }
+  return limits;
+}
+
+}  // namespace oktett::pov

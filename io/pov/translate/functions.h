@@ -1,0 +1,16 @@
+#pragma once
+/// \file Functions as expressions of scene files. Within io/ only.
+
+#include <optional>
+#include <string>
+
+#include "io/pov/translate/context.h"
+
+namespace oktett::pov {
+
+/// A function of x, y and z as an expression in these, less `threshold`. Nothing, after a warning, if it uses
+/// what expressions do not have, or is too long.
+std::optional<std::string> function_text(Context& context, const Function& function, const Place& where,
+                                         double threshold = 0);
+
+}  // namespace oktett::pov

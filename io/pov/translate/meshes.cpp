@@ -1,0 +1,490 @@
+#include "io/pov/translate/meshes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <numbers>
+
+#include "core/far_mesh.h"
+#include "io/pov/translate/extent.h"
+#include "io/pov/translate/plane_loops.h"
+
+namespace oktett::pov {
+
+void MeshMaker::add(std::array<MeshCorner, 3> corners) {
+  const Vec3d face =
+      cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
+  Vec3d normals{0, 0, 0};
+  for (const MeshCorner& c : corners) normals = normals + c.normal.value_or(Vec3d{0, 0, 0});
+  if (dot(face, normals) < 0) std::swap(corners[1], corners[2]);
+  triangles_.push_back(std::move(corners));
+}
+
+std::shared_ptr<const TriangleMesh> MeshMaker::finish() const {
+  auto mesh = std::make_shared<TriangleMesh>();
+  bool normals = false, uvs = false;
+  for (const auto& triangle : triangles_)
+    for (const MeshCorner& c : triangle) normals |= c.normal.has_value(), uvs |= c.uv.has_value();
+  std::vector<Vec3d> places;
+  std::map<std::array<double, 8>, std::uint32_t> known;
+  for (const auto& triangle : triangles_) {
+    const Vec3d face =
+        cross(triangle[1].position - triangle[0].position, triangle[2].position - triangle[0].position);
+    const double size = length(face);
+    const Vec3d flat = size > 0 ? face / size : Vec3d{0, 1, 0};
+    for (const MeshCorner& c : triangle) {
+      const Vec3d n = c.normal.value_or(flat);
+      const auto uv = c.uv.value_or(std::array<double, 2>{0, 0});
+      std::array<double, 8> key{c.position.x, c.position.y, c.position.z};
+      if (normals) key[3] = n.x, key[4] = n.y, key[5] = n.z;
+      if (uvs) key[6] = uv[0], key[7] = uv[1];
+      const auto [entry, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(places.size()));
+      if (is_new) {
+        places.push_back(c.position);
+        mesh->positions.push_back(Vec3f(c.position));
+        if (normals) mesh->normals.push_back(Vec3f(n));
+        if (uvs) mesh->uvs.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
+      }
+      mesh->indices.push_back(entry->second);
+      if (normals) mesh->normal_indices.push_back(entry->second);
+      if (uvs) mesh->uv_indices.push_back(entry->second);
+    }
+  }
+  // What lies far from the origin counts from a centre, as in files.
+  if (const std::optional<Vec3d> centre = far_centre(mesh->positions, false)) {
+    mesh->origin = *centre;
+    for (std::size_t i = 0; i < places.size(); ++i) mesh->positions[i] = Vec3f(places[i] - *centre);
+  }
+  return mesh;
+}
+
+std::string add_mesh(Context& context, const MeshMaker& mesh, const std::string& wanted) {
+  std::string name;
+  for (int i = 1; name.empty() || context.meshes.contains(name); ++i)
+    name = fmt::format("{}{}{}.ply", context.mesh_prefix, wanted, i == 1 ? "" : fmt::format("-{}", i));
+  context.meshes.emplace(name, mesh.finish());
+  return name;
+}
+
+namespace {
+
+/// Triangles by texture, in the order in which the textures come first.
+class Parts {
+ public:
+  MeshMaker& of(const std::shared_ptr<const Block>& texture) {
+    for (MeshPart& part : made.parts)
+      if (part.texture == texture) return part.mesh;
+    made.parts.push_back({{}, texture});
+    return made.parts.back().mesh;
+  }
+  MadeMesh made;
+};
+
+// ---- Polygons.
+
+/// Cuts a list of points, of which each loop ends with its first point, into loops.
+template <class Point>
+std::vector<std::vector<Point>> split_loops(const std::vector<Point>& points) {
+  std::vector<std::vector<Point>> loops;
+  std::vector<Point> loop;
+  for (const Point& p : points) {
+    if (loop.size() > 1 && p == loop.front()) {
+      loops.push_back(std::move(loop));
+      loop.clear();
+    } else {
+      loop.push_back(p);
+    }
+  }
+  if (loop.size() > 2) loops.push_back(std::move(loop));
+  std::erase_if(loops, [](const auto& l) { return l.size() < 3; });
+  return loops;
+}
+
+// ---- Each kind of object.
+
+MadeMesh make_triangles(Context& context, const Block& block, bool smooth, Arguments& a) {
+  (void)block;
+  MeshMaker mesh;
+  std::array<MeshCorner, 3> corners;
+  for (MeshCorner& c : corners) {
+    c.position = a.vector("a point");
+    if (smooth) c.normal = a.vector("a normal");
+  }
+  mesh.add(corners);
+  (void)context;
+  return {{{mesh, nullptr}}, false};
+}
+
+std::array<std::array<double, 2>, 3> read_uvs(Arguments& a) {
+  std::array<std::array<double, 2>, 3> uv;
+  for (auto& each : uv) each = a.pair("a texture coordinate");
+  return uv;
+}
+
+MadeMesh make_mesh1(Context& context, Arguments& a) {
+  Parts parts;
+  while (const Block* const block = a.peek_block()) {
+    const bool smooth = block->keyword == "smooth_triangle";
+    if (!smooth && block->keyword != "triangle") break;
+    Arguments inner(context, *block);
+    std::array<MeshCorner, 3> corners;
+    for (MeshCorner& c : corners) {
+      c.position = inner.vector("a point");
+      if (smooth) c.normal = inner.vector("a normal");
+    }
+    std::shared_ptr<const Block> texture;
+    while (!inner.at_end()) {
+      if (const auto own = inner.peek_shared_block()) {
+        if (own->keyword == "texture") texture = own;
+        inner.take();
+      } else if (inner.take_word("uv_vectors")) {
+        const auto uv = read_uvs(inner);
+        for (std::size_t k = 0; k < 3; ++k) corners[k].uv = uv[k];
+      } else {
+        inner.take();
+      }
+    }
+    parts.of(texture).add(corners);
+    a.take();
+  }
+  return parts.made;
+}
+
+/// The numbers of a list of `mesh2`, behind their count.
+struct Lists {
+  std::vector<Vec3d> vertices, normals;
+  std::vector<std::array<double, 2>> uvs;
+  std::vector<std::shared_ptr<const Block>> textures;
+  struct Face {
+    std::array<std::size_t, 3> at{};
+    std::array<std::size_t, 3> textures{};
+    bool has_texture = false;
+  };
+  std::vector<Face> faces;
+  std::vector<std::array<std::size_t, 3>> normal_faces, uv_faces;
+};
+
+std::array<std::size_t, 3> indices(Context& context, Arguments& a, std::size_t count) {
+  const Place where = a.where();
+  const Vec3d v = a.vector("three indices");
+  std::array<std::size_t, 3> out{};
+  for (int k = 0; k < 3; ++k) {
+    if (!(v[k] >= 0 && v[k] < static_cast<double>(count)))
+      context.fail(where, fmt::format("index {} is out of range: there are {}", v[k], count));
+    out[static_cast<std::size_t>(k)] = static_cast<std::size_t>(v[k]);
+  }
+  return out;
+}
+
+void read_list(Context& context, const Block& block, Lists& lists) {
+  Arguments a(context, block);
+  const std::string_view k = block.keyword;
+  if (k == "texture_list") {
+    while (!a.at_end()) {
+      if (const auto texture = a.peek_shared_block()) lists.textures.push_back(texture);
+      a.take();
+    }
+    return;
+  }
+  const auto count = static_cast<std::size_t>(std::max(0.0, a.number("a count")));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (k == "vertex_vectors") {
+      lists.vertices.push_back(a.vector("a point"));
+    } else if (k == "normal_vectors") {
+      lists.normals.push_back(a.vector("a normal"));
+    } else if (k == "uv_vectors") {
+      lists.uvs.push_back(a.pair("a texture coordinate"));
+    } else if (k == "face_indices") {
+      Lists::Face face{indices(context, a, lists.vertices.size())};
+      for (std::size_t n = 0; n < 3 && a.is_numbers() && !a.is_vector(); ++n) {
+        const auto index = static_cast<std::size_t>(std::max(0.0, a.number("an index")));
+        if (n == 0) face.textures.fill(index);
+        face.textures[n] = index, face.has_texture = true;
+      }
+      lists.faces.push_back(face);
+    } else if (k == "normal_indices") {
+      lists.normal_faces.push_back(indices(context, a, lists.normals.size()));
+    } else if (k == "uv_indices") {
+      lists.uv_faces.push_back(indices(context, a, lists.uvs.size()));
+    }
+  }
+}
+
+MadeMesh make_mesh2(Context& context, Arguments& a) {
+  Lists lists;
+  while (const Block* const block = a.peek_block()) {
+    const std::string_view k = block->keyword;
+    if (k != "vertex_vectors" && k != "normal_vectors" && k != "uv_vectors" && k != "texture_list" &&
+        k != "face_indices" && k != "normal_indices" && k != "uv_indices")
+      break;
+    read_list(context, *block, lists);
+    a.take();
+  }
+  // Without indices of their own, normals and texture coordinates are numbered as vertices.
+  const bool normals_by_vertex = lists.normal_faces.empty() && lists.normals.size() == lists.vertices.size();
+  const bool uvs_by_vertex = lists.uv_faces.empty() && lists.uvs.size() == lists.vertices.size();
+  Parts parts;
+  for (std::size_t f = 0; f < lists.faces.size(); ++f) {
+    const Lists::Face& face = lists.faces[f];
+    std::array<MeshCorner, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k].position = lists.vertices[face.at[k]];
+      if (normals_by_vertex && !lists.normals.empty()) corners[k].normal = lists.normals[face.at[k]];
+      if (f < lists.normal_faces.size()) corners[k].normal = lists.normals[lists.normal_faces[f][k]];
+      if (uvs_by_vertex && !lists.uvs.empty()) corners[k].uv = lists.uvs[face.at[k]];
+      if (f < lists.uv_faces.size()) corners[k].uv = lists.uvs[lists.uv_faces[f][k]];
+    }
+    std::shared_ptr<const Block> texture;
+    if (face.has_texture && face.textures[0] < lists.textures.size())
+      texture = lists.textures[face.textures[0]];
+    if (face.has_texture && (face.textures[1] != face.textures[0] || face.textures[2] != face.textures[0]))
+      context.tell("blended textures", a.block().where,
+                   "triangles whose corners have several textures show that of the first");
+    parts.of(texture).add(corners);
+  }
+  return parts.made;
+}
+
+std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
+  const Place where = a.where();
+  const auto count = static_cast<std::size_t>(std::max(0.0, a.number("a count")));
+  std::vector<Vec3d> points;
+  for (std::size_t i = 0; i < count; ++i) points.push_back(a.vector("a point"));
+  const auto loops = split_loops(points);
+  if (loops.empty()) {
+    context.warn(where, "the polygon has no area; it is left out");
+    return std::nullopt;
+  }
+  // The plane of the first loop, by Newell's sum.
+  Vec3d normal{0, 0, 0};
+  for (std::size_t i = 0; i < loops[0].size(); ++i)
+    normal = normal + cross(loops[0][i], loops[0][(i + 1) % loops[0].size()]);
+  const double size = length(normal);
+  if (!(size > 0)) {
+    context.warn(where, "the polygon has no area; it is left out");
+    return std::nullopt;
+  }
+  normal = normal / size;
+  // Loops are laid out without the axis along which the plane is seen best, and found again by their places.
+  const int drop = std::abs(normal.x) > std::abs(normal.y) && std::abs(normal.x) > std::abs(normal.z) ? 0
+                   : std::abs(normal.y) > std::abs(normal.z)                                          ? 1
+                                                                                                      : 2;
+  const int ax = (drop + 1) % 3, ay = (drop + 2) % 3;
+  const double height = dot(normal, loops[0][0]);
+  std::vector<Outline> flat;
+  for (const auto& loop : loops) {
+    flat.emplace_back();
+    for (const Vec3d& p : loop) flat.back().points.push_back({p[ax], p[ay]});
+  }
+  const auto lift = [&](const PlainPoint& p) {
+    Vec3d out;
+    out[ax] = p.x, out[ay] = p.y;
+    out[drop] = (height - normal[ax] * p.x - normal[ay] * p.y) / normal[drop];
+    return out;
+  };
+  MeshMaker mesh;
+  fill(flat, [&](PlainPoint p, PlainPoint q, PlainPoint r) {
+    mesh.add({MeshCorner{lift(p)}, MeshCorner{lift(q)}, MeshCorner{lift(r)}});
+  });
+  return MadeMesh{{{mesh, nullptr}}, false};
+}
+
+// ---- Prisms.
+
+/// Pieces into which a curved span is cut.
+constexpr int kSpanSteps = 16;
+
+PlainPoint mix(const PlainPoint& a, double s, const PlainPoint& b, double t, const PlainPoint& c = {0, 0},
+               double u = 0, const PlainPoint& d = {0, 0}, double v = 0) {
+  return {a.x * s + b.x * t + c.x * u + d.x * v, a.y * s + b.y * t + c.y * u + d.y * v};
+}
+
+/// Adds points of a Bezier curve, without its end.
+void add_bezier(const PlainPoint& a, const PlainPoint& b, const PlainPoint& c, const PlainPoint& d,
+                Outline& out) {
+  for (int i = 0; i < kSpanSteps; ++i) {
+    const double t = static_cast<double>(i) / kSpanSteps, s = 1 - t;
+    out.points.push_back(mix(a, s * s * s, b, 3 * s * s * t, c, 3 * s * t * t, d, t * t * t));
+    out.tangents.push_back(mix(a, -3 * s * s, b, 3 * s * (s - 2 * t), c, 3 * t * (2 * s - t), d, 3 * t * t));
+  }
+}
+
+bool same(const PlainPoint& a, const PlainPoint& b) { return a.x == b.x && a.y == b.y; }
+
+/// The outlines that a list of points makes with a spline.
+std::vector<Outline> outlines_of(const std::vector<PlainPoint>& p, std::string_view spline) {
+  std::vector<Outline> outlines;
+  if (spline == "bezier_spline") {
+    Outline outline;
+    for (std::size_t i = 0; i + 3 < p.size(); i += 4) {
+      if (!outline.points.empty() && !same(p[i], p[i - 1])) outlines.push_back(std::exchange(outline, {}));
+      add_bezier(p[i], p[i + 1], p[i + 2], p[i + 3], outline);
+    }
+    if (!outline.points.empty()) outlines.push_back(std::move(outline));
+    return outlines;
+  }
+  // Points before the first and behind the last one of each loop give only directions.
+  const std::size_t before = spline == "quadratic_spline" || spline == "cubic_spline" ? 1 : 0;
+  const std::size_t behind = spline == "cubic_spline" ? 1 : 0;
+  for (std::size_t begin = 0; begin + before + 1 < p.size();) {
+    const std::size_t first = begin + before;
+    std::size_t last = first + 1;
+    while (last < p.size() && !same(p[last], p[first])) ++last;
+    const bool closed = last < p.size();
+    if (!closed) last = p.size() - behind;
+    Outline outline;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t next = i + 1 < p.size() ? i + 1 : first;
+      if (spline == "linear_spline" || spline.empty()) {
+        outline.points.push_back(p[i]);
+      } else if (next <= last && next < p.size()) {
+        const PlainPoint &a = p[i - 1], &b = p[i], &c = p[next];
+        if (spline == "cubic_spline") {
+          const PlainPoint& d = next + 1 < p.size() ? p[next + 1] : c;
+          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 1, d, -1.0 / 6, b, 1.0 / 6), c, outline);
+        } else {
+          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 0.5, b, 2.0 / 3, a, -1.0 / 6), c, outline);
+        }
+      }
+    }
+    if (outline.points.size() > 2) outlines.push_back(std::move(outline));
+    begin = last + 1 + behind;
+  }
+  return outlines;
+}
+
+std::optional<MadeMesh> make_prism(Context& context, Arguments& a) {
+  const Place where = a.where();
+  std::string_view spline = "linear_spline";
+  bool conic = false;
+  while (!a.is_numbers()) {
+    const std::string_view word = a.peek_word();
+    if (word.empty()) context.fail(a.where(), "expected the heights of a prism");
+    if (word == "conic_sweep") conic = true;
+    if (word.ends_with("_spline")) spline = word;
+    a.take();
+  }
+  const double low = a.number("a height"), high = a.number("a height");
+  const auto count = static_cast<std::size_t>(std::max(0.0, a.number("a count")));
+  std::vector<PlainPoint> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto p = a.pair("a point");
+    points.push_back({p[0], p[1]});
+  }
+  const bool open = has_word(a.block(), "open");
+  std::vector<Outline> outlines = outlines_of(points, spline);
+  if (outlines.empty() || low == high) {
+    context.warn(where, "the prism has no volume; it is left out");
+    return std::nullopt;
+  }
+  const double heights[2] = {std::min(low, high), std::max(low, high)};
+  const auto at = [&](const PlainPoint& p, int end) {
+    const double scale = conic ? heights[end] : 1;
+    return Vec3d{p.x * scale, heights[end], p.y * scale};
+  };
+  MeshMaker mesh;
+  const auto cap = [&](PlainPoint p, PlainPoint q, PlainPoint r) {
+    for (const int end : {0, 1})
+      if (!conic || heights[end] != 0)
+        mesh.add({MeshCorner{at(p, end)}, MeshCorner{at(end == 0 ? q : r, end)},
+                  MeshCorner{at(end == 0 ? r : q, end)}});
+  };
+  // Outlines that cross each other get further points, which the sides have, too.
+  if (!open) fill(outlines, cap);
+  for (const Outline& outline : outlines) {
+    const std::size_t n = outline.points.size();
+    const double turn = area(outline.points) > 0 ? 1 : -1;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t j = (i + 1) % n;
+      const PlainPoint &p = outline.points[i], &q = outline.points[j];
+      std::array<MeshCorner, 4> corner{MeshCorner{at(p, 0)}, MeshCorner{at(q, 0)}, MeshCorner{at(q, 1)},
+                                       MeshCorner{at(p, 1)}};
+      // Smooth along a span, with a crease where two spans meet at an angle.
+      if (!outline.tangents.empty() && !conic) {
+        const auto normal = [&](const PlainPoint& t) { return Vec3d{t.y * turn, 0, -t.x * turn}; };
+        const PlainPoint& t = outline.tangents[i];
+        const PlainPoint& u = outline.tangents[j];
+        const PlainPoint edge{q.x - p.x, q.y - p.y};
+        const auto usable = [&](const PlainPoint& v) {
+          return v.x * edge.x + v.y * edge.y > 0.9 * std::hypot(v.x, v.y) * std::hypot(edge.x, edge.y);
+        };
+        const Vec3d first = normal(usable(t) ? t : edge), second = normal(usable(u) ? u : edge);
+        corner[0].normal = corner[3].normal = first, corner[1].normal = corner[2].normal = second;
+      }
+      const bool is_tip[2] = {conic && heights[0] == 0, conic && heights[1] == 0};
+      if (!is_tip[0]) mesh.add({corner[0], corner[1], is_tip[1] ? corner[3] : corner[2]});
+      if (!is_tip[1]) mesh.add({corner[0], corner[2], corner[3]});
+    }
+  }
+  if (spline != "linear_spline")
+    context.tell("curved prism", where,
+                 fmt::format("curved prisms are meshes with {} flat sides for each span", kSpanSteps));
+  return MadeMesh{{{mesh, nullptr}}, !open};
+}
+
+MadeMesh make_patch(Context& context, Arguments& a) {
+  const Place where = a.where();
+  int steps[2] = {8, 8};
+  while (!a.is_vector()) {
+    const std::string_view word = a.peek_word();
+    if (a.at_end()) context.fail(a.where(), "expected 16 points");
+    a.take();
+    if (word == "u_steps" || word == "v_steps")
+      steps[word == "v_steps"] = 1 << std::clamp(static_cast<int>(a.number("a number")), 0, 6);
+    else if (!word.empty() && a.is_numbers() && !a.is_vector())
+      a.take();
+  }
+  context.tell("bicubic_patch", where, "Bezier patches are meshes, at least 16 by 16 smooth quadrilaterals");
+  for (int& s : steps) s = std::max(s, 16);
+  Vec3d p[4][4];
+  for (auto& row : p)
+    for (Vec3d& each : row) each = a.vector("a point");
+  const auto weights = [](double t, double(&w)[4], double(&d)[4]) {
+    const double s = 1 - t;
+    w[0] = s * s * s, w[1] = 3 * s * s * t, w[2] = 3 * s * t * t, w[3] = t * t * t;
+    d[0] = -3 * s * s, d[1] = 3 * s * s - 6 * s * t, d[2] = 6 * s * t - 3 * t * t, d[3] = 3 * t * t;
+  };
+  const auto corner = [&](int i, int j) {
+    double wu[4], du[4], wv[4], dv[4];
+    const double u = static_cast<double>(i) / steps[0], v = static_cast<double>(j) / steps[1];
+    weights(u, wu, du), weights(v, wv, dv);
+    Vec3d at{0, 0, 0}, along_u{0, 0, 0}, along_v{0, 0, 0};
+    for (int m = 0; m < 4; ++m)
+      for (int n = 0; n < 4; ++n) {
+        at = at + p[m][n] * (wv[m] * wu[n]);
+        along_u = along_u + p[m][n] * (wv[m] * du[n]), along_v = along_v + p[m][n] * (dv[m] * wu[n]);
+      }
+    MeshCorner c{at};
+    const Vec3d normal = cross(along_u, along_v);
+    if (length(normal) > 1e-12) c.normal = normal / length(normal);
+    c.uv = {u, v};
+    return c;
+  };
+  MeshMaker mesh;
+  for (int i = 0; i < steps[0]; ++i)
+    for (int j = 0; j < steps[1]; ++j) {
+      const MeshCorner c[4] = {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
+      mesh.add({c[0], c[1], c[2]}), mesh.add({c[0], c[2], c[3]});
+    }
+  return {{{mesh, nullptr}}, false};
+}
+
+}  // namespace
+
+std::optional<MadeMesh> make_mesh(Context& context, Arguments& a) {
+  const std::string_view kind = a.block().keyword;
+  if (kind == "mesh") return make_mesh1(context, a);
+  if (kind == "mesh2") return make_mesh2(context, a);
+  if (kind == "triangle" || kind == "smooth_triangle")
+    return make_triangles(context, a.block(), kind == "smooth_triangle", a);
+  if (kind == "polygon") return make_polygon(context, a);
+  if (kind == "prism") return make_prism(context, a);
+  if (kind == "bicubic_patch") return make_patch(context, a);
+  return std::nullopt;
+}
+
+}  // namespace oktett::pov

@@ -1,0 +1,476 @@
+#include "io/pov/translate/objects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "io/pov/translate/shapes.h"
+#include "io/pov/translate/view.h"
+
+namespace oktett::pov {
+
+/// A declared object of so many shapes stands once if it is used more than once; in combinations, where
+/// instances cost more, one of that many.
+static constexpr int kInstanceWeight = 4, kOperandWeight = 100;
+
+struct ObjectWriter::Modifiers {
+  Moves moves;
+  struct Clip {
+    std::shared_ptr<const Block> block;
+    std::size_t moves_before;
+  };
+  std::vector<Clip> clips;
+  Dress own;
+  bool no_shadow = false, no_image = false, no_reflection = false, inverse = false;
+  bool changes_look() const { return own.has_texture() || own.interior != nullptr; }
+  bool hides() const { return no_shadow || no_image || no_reflection; }
+};
+
+ObjectWriter::ObjectWriter(Context& context) : context_(context), wardrobe_(context) {
+  for (const Element& statement : context.document.statements)
+    if (const auto* const block = std::get_if<std::shared_ptr<const Block>>(&statement.value))
+      count_uses(*block);
+}
+
+void ObjectWriter::count_uses(const std::shared_ptr<const Block>& block) {
+  if (!block) return;
+  const bool is_named = is_object(block->keyword) && !block->name.empty();
+  if (is_named && ++uses_[block.get()] > 1) return;
+  for (const Element& e : block->elements)
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value))
+      if (*inner && (is_object((*inner)->keyword) || (*inner)->keyword == "clipped_by")) count_uses(*inner);
+}
+
+int ObjectWriter::weight(const Block& block) {
+  const auto [entry, is_new] = weights_.try_emplace(&block, 0);
+  if (!is_new) return entry->second;
+  constexpr std::array<std::string_view, 13> kHeavy{
+      "mesh",  "mesh2", "height_field", "isosurface", "blob",          "poly",         "quartic",
+      "cubic", "lathe", "sor",          "prism",      "bicubic_patch", "julia_fractal"};
+  int sum = std::ranges::find(kHeavy, block.keyword) != kHeavy.end() ? kOperandWeight : 0;
+  bool has_children = false;
+  for (const Element& e : block.elements)
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value))
+      if (*inner && is_object((*inner)->keyword))
+        sum = std::min(1000, sum + weight(**inner)), has_children = true;
+  if (!has_children) sum = std::max(sum, 1);
+  return weights_[&block] = sum;
+}
+
+bool ObjectWriter::is_dressed(const Block& block) {
+  bool any_child = false, all = true;
+  for (const Element& e : block.elements) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    if (inner == nullptr || *inner == nullptr) continue;
+    const std::string_view k = (*inner)->keyword;
+    if (k == "texture" || k == "pigment" || k == "material" || k == "finish") return true;
+    if (is_object(k)) any_child = true, all &= is_dressed(**inner);
+  }
+  return any_child && all;
+}
+
+bool ObjectWriter::has_light(const Block& block) {
+  return std::ranges::any_of(block.elements, [](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    return inner != nullptr && *inner != nullptr &&
+           ((*inner)->keyword == "light_source" || (is_object((*inner)->keyword) && has_light(**inner)));
+  });
+}
+
+void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
+  Outer outer;
+  outer.to_world = moves.all;
+  const Maybe built = build(block, outer);
+  if (!built || built->node == nullptr) return;
+  Node node = built->node;
+  Tree& tree = context_.tree;
+  const Place& where = block->where;
+  if (!moves.empty() || !casts_shadow) {
+    const Node list = tree.list(where);
+    Tree::push(list, node);
+    node = tree.map(where, "group", list);
+    if (const Node transform = moves_node(tree, where, moves)) tree.put(node, "transform", transform);
+    if (!casts_shadow) {
+      const Node rays = tree.list(where);
+      for (const char* ray : {"camera", "diffuse", "glossy", "transmission", "volume"})
+        Tree::push(rays, tree.word(where, ray));
+      tree.put(node, "visible_to", rays);
+    }
+  }
+  std::string name = block->name;
+  if (name.empty() && block->keyword == "object" && !block->elements.empty())
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&block->elements[0].value);
+        inner != nullptr && *inner != nullptr)
+      name = (*inner)->name;
+  if (!name.empty()) tree.put(node, "name", tree.text(where, context_.unique(object_names_, name)));
+  Tree::push(context_.objects, node);
+}
+
+void ObjectWriter::add_light(const std::shared_ptr<const Block>& block, const Affine& to_world) {
+  const LightBody body = pov::add_light(context_, *block, to_world);
+  if (!body.object) return;
+  Moves moves = body.moves;
+  if (!(to_world == Affine{})) moves.add({Move::Kind::matrix, {}, to_world, block->where});
+  add(body.object, moves, false);
+}
+
+// ---- One object.
+
+ObjectWriter::Maybe ObjectWriter::build(const std::shared_ptr<const Block>& block, const Outer& outer) {
+  const bool is_shared =
+      !hidden_ && !block->name.empty() && uses_.contains(block.get()) && uses_.at(block.get()) > 1;
+  if (is_shared && !has_light(*block)) {
+    const bool dressed = is_dressed(*block);
+    const bool keeps_look = dressed || (!outer.dress.has_texture() && outer.dress.interior == nullptr);
+    const int least = outer.operand ? kOperandWeight : kInstanceWeight;
+    if (keeps_look && weight(*block) >= least) return build_instance(block, outer);
+  }
+  return build_object(*block, outer);
+}
+
+ObjectWriter::Maybe ObjectWriter::build_instance(const std::shared_ptr<const Block>& block,
+                                                 const Outer& outer) {
+  auto found = prototypes_.find(block.get());
+  if (found == prototypes_.end()) {
+    Outer inside;
+    inside.default_texture = block->default_texture;
+    inside.prototype = true;
+    const Maybe built = build_object(*block, inside);
+    Prototype prototype;
+    if (built && built->node && !built->negative) {
+      prototype = {context_.unique(prototype_names_, block->name), built->solid};
+      context_.tree.put(context_.define, prototype.name, built->node);
+    }
+    found = prototypes_.emplace(block.get(), prototype).first;
+  }
+  const Prototype& prototype = found->second;
+  if (prototype.name.empty()) return std::nullopt;
+  (void)outer;
+  const Node node =
+      context_.tree.map(block->where, "instance", context_.tree.text(block->where, prototype.name));
+  return Built{node, prototype.solid, false};
+}
+
+ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& given) {
+  Outer outer = given;
+  if (block.default_texture) outer.default_texture = block.default_texture;
+  const std::string_view k = block.keyword;
+  Arguments arguments(context_, block);
+  const bool is_union = k == "union" || k == "merge";
+  const bool is_combination = is_union || k == "intersection" || k == "difference";
+  if (!is_combination && k != "object") return build_shape(block, outer, arguments);
+  std::vector<std::shared_ptr<const Block>> children;
+  // Objects may stand behind modifiers, too.
+  Block rest = block;
+  rest.elements.clear();
+  for (const Element& e : block.elements) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    const bool is_child = inner != nullptr && *inner != nullptr &&
+                          (is_object((*inner)->keyword) || (*inner)->keyword == "light_source");
+    if (is_child)
+      children.push_back(*inner);
+    else
+      rest.elements.push_back(e);
+  }
+  Arguments behind(context_, rest);
+  const Modifiers m = read_modifiers(block, behind);
+  if (children.empty()) context_.fail(block.where, fmt::format("'{}' contains no object", k));
+  return build_children(block, children, m, outer);
+}
+
+ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Arguments& a) {
+  Modifiers m;
+  while (!a.at_end()) {
+    const Place where = a.where();
+    if (take_moves(context_, a, m.moves)) continue;
+    if (const std::shared_ptr<const Block> inner = a.peek_shared_block()) {
+      a.take();
+      const std::string_view k = inner->keyword;
+      if (k == "texture" || k == "pigment") {
+        m.own.textures.push_back(inner), m.own.to_texture = m.moves.all;
+      } else if (k == "finish" || k == "normal") {
+        m.own.finishes.push_back(inner), m.own.to_texture = m.moves.all;
+      } else if (k == "interior") {
+        m.own.interior = inner;
+      } else if (k == "material") {
+        read_material(*inner, m);
+      } else if (k == "clipped_by") {
+        m.clips.push_back({inner, m.moves.list.size()});
+      } else if (k == "interior_texture") {
+        context_.tell("interior_texture", where,
+                      "'interior_texture' has no meaning here; both sides look alike");
+      } else if (k != "bounded_by" && k != "photons" && k != "radiosity" && k != "uv_mapping") {
+        context_.tell(fmt::format("modifier {}", k), where,
+                      fmt::format("'{}' of an object has no meaning here, and is left out", k));
+      }
+      continue;
+    }
+    if (a.take_word("no_shadow"))
+      m.no_shadow = a.flag();
+    else if (a.take_word("no_image"))
+      m.no_image = a.flag();
+    else if (a.take_word("no_reflection"))
+      m.no_reflection = a.flag();
+    else if (a.take_word("inverse"))
+      m.inverse = !m.inverse;
+    else if (a.take_word("hollow") || a.take_word("sturm") || a.take_word("hierarchy") ||
+             a.take_word("double_illuminate") || a.take_word("open") || a.take_word("no_radiosity") ||
+             a.take_word("split_union") || a.take_word("cutaway_textures") || a.take_word("uv_mapping"))
+      a.flag();
+    else
+      a.take();
+  }
+  (void)block;
+  return m;
+}
+
+/// The texture and interior of a block `material`.
+void ObjectWriter::read_material(const Block& block, Modifiers& m) {
+  for (const Element& e : block.elements) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    if (inner == nullptr || *inner == nullptr) continue;
+    if ((*inner)->keyword == "texture") m.own.textures.push_back(*inner), m.own.to_texture = m.moves.all;
+    if ((*inner)->keyword == "interior") m.own.interior = *inner;
+    if ((*inner)->keyword == "material") read_material(**inner, m);
+  }
+}
+
+/// The look of an object with these modifiers, as seen from its space before its transforms.
+Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
+  Dress dress = outer.dress;
+  dress.to_texture = dress.to_texture * m.moves.all;
+  if (m.own.has_texture()) {
+    dress.textures = m.own.textures, dress.finishes = m.own.finishes, dress.to_texture = m.own.to_texture;
+  }
+  if (m.own.interior) dress.interior = m.own.interior;
+  return dress;
+}
+
+ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& outer, Arguments& arguments) {
+  Extent within = limits_of(context_, block);
+  // What encloses it, seen from its space.
+  Moves moves;
+  Arguments scan(context_, block);
+  while (!scan.at_end())
+    if (!take_moves(context_, scan, moves)) scan.take();
+  if (outer.within.is_finite() && moves.all.is_invertible())
+    within = within.meet(outer.within.moved(moves.all.inverse()));
+  const bool is_clipped = std::ranges::any_of(block.elements, [](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    return inner != nullptr && *inner != nullptr && (*inner)->keyword == "clipped_by";
+  });
+  std::optional<Shapes> shapes = make_shapes(context_, arguments, within, outer.operand || is_clipped);
+  const Modifiers m = read_modifiers(block, arguments);
+  if (!shapes || shapes->parts.empty()) return std::nullopt;
+  Tree& tree = context_.tree;
+  const Dress dress = dress_of(m, outer);
+  std::vector<Built> parts;
+  const bool single = shapes->parts.size() == 1;
+  for (Shape& shape : shapes->parts) {
+    Dress own = dress;
+    if (shape.texture) own.textures = {shape.texture}, own.finishes.clear();
+    own.to_texture = own.to_texture * shape.first.all;
+    const Node node = tree.map(block.where, shape.key, shape.value);
+    tree.put(node, "material",
+             hidden_ || shape.invisible ? wardrobe_.invisible(block.where)
+                                        : wardrobe_.material(own, outer.default_texture, block.where));
+    Moves all = shape.first;
+    if (single && m.clips.empty()) all.add(m.moves);
+    if (const Node transform = moves_node(tree, block.where, all)) tree.put(node, "transform", transform);
+    parts.push_back({node, shapes->solid, false});
+  }
+  if (single) return finish(block, m, outer, parts[0], m.clips.empty());
+  Built whole;
+  if (shapes->meet || outer.operand || is_clipped) {
+    whole = combine(block.where, shapes->meet ? "intersection" : "union", parts);
+    whole.solid = shapes->solid;
+  } else {
+    std::vector<Node> nodes;
+    for (const Built& part : parts) nodes.push_back(part.node);
+    whole = {list_node(block.where, "group", nodes), shapes->solid, false};
+  }
+  return finish(block, m, outer, whole, false);
+}
+
+std::vector<ObjectWriter::Built> ObjectWriter::build_all(
+    const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer) {
+  std::vector<Built> built;
+  for (const auto& child : children) {
+    if (child->keyword == "light_source") {
+      add_light(child, outer.to_world);
+      continue;
+    }
+    Maybe part = build(child, outer);
+    if (part && outer.operand && !part->solid) {
+      context_.warn(child->where, fmt::format("'{}' has no inside here, and is left out of the combination",
+                                              child->keyword));
+      part.reset();
+    }
+    built.push_back(part ? *part : Built{});
+  }
+  return built;
+}
+
+ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
+                                                 const std::vector<std::shared_ptr<const Block>>& children,
+                                                 const Modifiers& m, const Outer& outer) {
+  const std::string_view k = block.keyword;
+  Outer inner = outer;
+  inner.dress = dress_of(m, outer);
+  inner.to_world = outer.to_world * m.moves.all;
+  inner.operand =
+      outer.operand || !m.clips.empty() || k == "intersection" || k == "difference" || k == "merge";
+  inner.within = limits_of(context_, block);
+  if (outer.within.is_finite() && m.moves.all.is_invertible())
+    inner.within = inner.within.meet(outer.within.moved(m.moves.all.inverse()));
+  if (k == "intersection")
+    for (const auto& child : children) inner.within = inner.within.meet(extent_of(context_, *child));
+  if (k == "difference") inner.within = inner.within.meet(extent_of(context_, *children[0]));
+  std::vector<Built> parts = build_all(children, inner);
+  // Without one of these nothing is left, or nobody knows what.
+  const bool lost = (k == "intersection" || k == "object") &&
+                    std::ranges::any_of(parts, [](const Built& b) { return !b.node; });
+  if (lost || parts.empty() || (k == "difference" && !parts[0].node)) return std::nullopt;
+  std::erase_if(parts, [](const Built& b) { return !b.node; });
+  if (parts.empty()) return std::nullopt;
+  if (k == "object") {
+    if (parts.size() == 1) {
+      Built only = parts[0];
+      // Its transforms join those of the only object in it, unless it is cut.
+      return finish(block, m, outer, only, false);
+    }
+    context_.tell("object", block.where, "an 'object' of several objects counts as a union");
+  }
+  if (inner.operand)
+    return finish(block, m, outer, combine(block.where, k == "merge" || k == "object" ? "union" : k, parts),
+                  false);
+  std::vector<Node> nodes;
+  bool solid = true;
+  for (const Built& part : parts) nodes.push_back(part.node), solid &= part.solid;
+  return finish(block, m, outer,
+                {nodes.size() == 1 ? nodes[0] : list_node(block.where, "group", nodes), solid, false}, false);
+}
+
+/// Adds transforms, unless they are there already, and what cuts or hides the object.
+ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m, const Outer& outer,
+                                         Built built, bool moved) {
+  Tree& tree = context_.tree;
+  const Place& where = block.where;
+  const auto move = [&](const Moves& moves) {
+    if (moves.empty()) return;
+    // A transform of its own is followed by that of what is around it.
+    const bool has_own =
+        std::ranges::any_of(built.node->items, [](const YamlNode* n) { return n->text == "transform"; });
+    if (has_own) {
+      extend_transform(built.node, moves);
+      return;
+    }
+    tree.put(built.node, "transform", moves_node(tree, where, moves));
+  };
+  std::size_t done = 0;
+  const auto moves_until = [&](std::size_t end) {
+    Moves some;
+    for (; done < end; ++done) some.add(m.moves.list[done]);
+    return some;
+  };
+  for (const Modifiers::Clip& clip : m.clips) {
+    if (!moved) move(moves_until(clip.moves_before));
+    if (!built.solid) {
+      context_.tell("clipped flat", clip.block->where, "what has no inside is not cut by 'clipped_by'");
+      continue;
+    }
+    std::vector<std::shared_ptr<const Block>> cutters;
+    for (const Element& e : clip.block->elements)
+      if (const auto* const cutter = std::get_if<std::shared_ptr<const Block>>(&e.value);
+          cutter != nullptr && *cutter != nullptr && is_object((*cutter)->keyword))
+        cutters.push_back(*cutter);
+    Outer inside;
+    inside.operand = true, inside.default_texture = outer.default_texture;
+    hidden_ = true;
+    std::vector<Built> parts = build_all(cutters, inside);
+    hidden_ = false;
+    std::erase_if(parts, [](const Built& b) { return !b.node; });
+    if (parts.empty()) continue;
+    Built cutter = parts.size() == 1 ? parts[0] : combine(clip.block->where, "union", parts);
+    built = combine(where, "intersection", {built, cutter});
+  }
+  if (!moved) move(moves_until(m.moves.list.size()));
+  if (m.inverse) built.negative = !built.negative;
+  if (m.hides()) {
+    if (outer.operand) {
+      context_.tell("hidden operand", where,
+                    "in combinations 'no_shadow', 'no_image' and 'no_reflection' are left out");
+    } else {
+      const Node rays = tree.list(where);
+      for (const auto& [ray, hidden] : {std::pair{"camera", m.no_image},
+                                        {"diffuse", false},
+                                        {"glossy", m.no_reflection},
+                                        {"transmission", false},
+                                        {"volume", false},
+                                        {"shadow", m.no_shadow}})
+        if (!hidden) Tree::push(rays, tree.word(where, ray));
+      // One object has one list: what is around it hides the rest.
+      built.node = list_node(where, "group", {built.node});
+      tree.put(built.node, "visible_to", rays);
+    }
+  }
+  return built;
+}
+
+/// Appends operations to the transform that an object has.
+void ObjectWriter::extend_transform(Node object, const Moves& moves) {
+  Tree& tree = context_.tree;
+  for (std::size_t i = 0; i + 1 < object->items.size(); i += 2) {
+    if (object->items[i]->text != "transform") continue;
+    const YamlNode* const old = object->items[i + 1];
+    const Node list = tree.list(moves.list[0].where);
+    if (old->kind == YamlKind::sequence)
+      list->items = old->items;
+    else
+      list->items = {old};
+    const Node more = moves_node(tree, moves.list[0].where, moves);
+    if (more->kind == YamlKind::sequence)
+      list->items.insert(list->items.end(), more->items.begin(), more->items.end());
+    else
+      list->items.push_back(more);
+    object->items[i + 1] = list;
+  }
+}
+
+// ---- Combinations.
+
+Node ObjectWriter::list_node(const Place& where, std::string_view key, const std::vector<Node>& items) {
+  const Node list = context_.tree.list(where);
+  for (const Node item : items) Tree::push(list, item);
+  return context_.tree.map(where, key, list);
+}
+
+/// A combination whose parts may be negative: scene files have none that are, but differences.
+ObjectWriter::Built ObjectWriter::combine(const Place& where, std::string_view op, std::vector<Built> parts) {
+  if (op == "difference") {
+    for (std::size_t i = 1; i < parts.size(); ++i) parts[i].negative = !parts[i].negative;
+    op = "intersection";
+  }
+  std::vector<Node> positive, negative;
+  for (const Built& part : parts) (part.negative ? negative : positive).push_back(part.node);
+  const auto several = [&](std::string_view key, const std::vector<Node>& nodes) {
+    return nodes.size() == 1 ? nodes[0] : list_node(where, key, nodes);
+  };
+  const auto without = [&](const Node first, const std::vector<Node>& rest) {
+    if (rest.empty()) return first;
+    std::vector<Node> all{first};
+    all.insert(all.end(), rest.begin(), rest.end());
+    return list_node(where, "difference", all);
+  };
+  // By De Morgan's laws.
+  if (op == "intersection") {
+    if (positive.empty()) return {several("union", negative), true, true};
+    return {without(several("intersection", positive), negative), true, false};
+  }
+  if (negative.empty()) return {several("union", positive), true, false};
+  return {without(several("intersection", negative), positive), true, true};
+}
+
+}  // namespace oktett::pov

@@ -1,0 +1,84 @@
+#pragma once
+/// \file Objects with their modifiers, combinations, and what is declared once and shown often. Within io/
+/// only.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "io/pov/translate/context.h"
+#include "io/pov/translate/extent.h"
+#include "io/pov/translate/look.h"
+
+namespace oktett::pov {
+
+/// Adds objects to the tree.
+class ObjectWriter {
+ public:
+  explicit ObjectWriter(Context& context);
+
+  /// Adds an object of the scene, `moves` after its own transforms. `casts_shadow` of false hides it from
+  /// rays to lights.
+  void add(const std::shared_ptr<const Block>& block, const Moves& moves = {}, bool casts_shadow = true);
+  void add_light(const std::shared_ptr<const Block>& block, const Affine& to_world);
+
+ private:
+  /// What an object stands in.
+  struct Outer {
+    Dress dress;
+    std::shared_ptr<const Block> default_texture;
+    Extent within;
+    Affine to_world;
+    bool operand = false;    ///< a part of a combination
+    bool prototype = false;  ///< or of what stands in several places
+  };
+  /// An object of scene files. One that is `negative` stands for all but it.
+  struct Built {
+    Node node = nullptr;
+    bool solid = true, negative = false;
+  };
+  /// What stands behind the arguments of an object.
+  struct Modifiers;
+  using Maybe = std::optional<Built>;
+
+  Maybe build(const std::shared_ptr<const Block>& block, const Outer& outer);
+  Maybe build_object(const Block& block, const Outer& outer);
+  Maybe build_shape(const Block& block, const Outer& outer, Arguments& arguments);
+  Maybe build_children(const Block& block, const std::vector<std::shared_ptr<const Block>>& children,
+                       const Modifiers& m, const Outer& outer);
+  Maybe build_instance(const std::shared_ptr<const Block>& block, const Outer& outer);
+  std::vector<Built> build_all(const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer);
+  void read_material(const Block& block, Modifiers& modifiers);
+  void extend_transform(Node object, const Moves& moves);
+  Modifiers read_modifiers(const Block& block, Arguments& arguments);
+  Dress dress_of(const Modifiers& m, const Outer& outer) const;
+  Built finish(const Block& block, const Modifiers& m, const Outer& outer, Built built, bool moved);
+
+  Built combine(const Place& where, std::string_view op, std::vector<Built> parts);
+  Node list_node(const Place& where, std::string_view key, const std::vector<Node>& items);
+
+  void count_uses(const std::shared_ptr<const Block>& block);
+  /// How much a declared object is worth standing once: the number of shapes in it, many for meshes.
+  int weight(const Block& block);
+  /// Whether all of an object has a texture of its own.
+  bool is_dressed(const Block& block);
+  static bool has_light(const Block& block);
+
+  Context& context_;
+  bool hidden_ = false;  ///< what is built is not seen: it only cuts
+  Wardrobe wardrobe_;
+  std::map<const Block*, int> uses_;
+  std::map<const Block*, int> weights_;
+  struct Prototype {
+    std::string name;  ///< empty: nothing is left of it
+    bool solid = true;
+  };
+  std::map<const Block*, Prototype> prototypes_;
+  std::set<std::string> prototype_names_, object_names_;
+};
+
+}  // namespace oktett::pov

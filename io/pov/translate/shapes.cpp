@@ -1,0 +1,627 @@
+#include "io/pov/translate/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/image/heights.h"
+#include "io/pov/translate/functions.h"
+#include "io/pov/translate/meshes.h"
+#include "kernels/exact/lathe.h"
+#include "kernels/exact/revolution.h"
+#include "kernels/heights/height_grid.h"
+
+namespace oktett::pov {
+namespace {
+
+/// Half the edge of the box in which a polynomial surface is seen that nothing else bounds.
+constexpr double kReach = 100;
+
+class ShapeMaker {
+ public:
+  ShapeMaker(Context& context, Arguments& a, const Extent& within, bool operand)
+      : context_(context),
+        tree_(context.tree),
+        a_(a),
+        where_(a.block().where),
+        within_(within),
+        operand_(operand) {}
+
+  std::optional<Shapes> make() {
+    const std::string_view k = a_.block().keyword;
+    if (k == "sphere") return sphere();
+    if (k == "box") return box();
+    if (k == "cylinder") return cylinder();
+    if (k == "cone") return cone();
+    if (k == "plane") return plane();
+    if (k == "disc") return disc();
+    if (k == "torus") return torus();
+    if (k == "quadric") return quadric();
+    if (k == "cubic") return polynomial(3);
+    if (k == "quartic") return polynomial(4);
+    if (k == "poly") return polynomial(0);
+    if (k == "superellipsoid") return superellipsoid();
+    if (k == "blob") return blob();
+    if (k == "lathe") return lathe();
+    if (k == "sor") return sor();
+    if (k == "isosurface") return isosurface();
+    if (k == "julia_fractal") return julia();
+    if (k == "height_field") return height_field();
+    if (std::optional<MadeMesh> made = make_mesh(context_, a_)) return mesh(std::move(*made));
+    constexpr std::array<std::string_view, 6> kMeshes{"mesh",    "mesh2", "triangle",
+                                                      "polygon", "prism", "bicubic_patch"};
+    if (std::ranges::find(kMeshes, k) == kMeshes.end())
+      context_.tell(std::string(k), where_,
+                    fmt::format("'{}' is not read here; such objects are left out", k));
+    return std::nullopt;
+  }
+
+ private:
+  Node number(double value) { return tree_.number(where_, value); }
+  Node vector(const Vec3d& v) { return tree_.vector(where_, v); }
+  Node map() { return tree_.map(where_); }
+
+  static Shapes one(std::string key, Node value, bool solid = true) {
+    Shapes shapes;
+    shapes.parts.push_back({std::move(key), value, nullptr, {}});
+    shapes.solid = solid;
+    return shapes;
+  }
+
+  void put_bounds(Node map, const Vec3d& lo, const Vec3d& hi) {
+    const Node bounds = this->map();
+    tree_.put(bounds, "min", vector(lo)), tree_.put(bounds, "max", vector(hi));
+    tree_.put(map, "bounds", bounds);
+  }
+
+  std::optional<Shapes> left_out(const std::string& why) {
+    context_.warn(where_, fmt::format("{}; the object is left out", why));
+    return std::nullopt;
+  }
+
+  /// `open` has no inside; where one is needed, the solid stands for it.
+  bool is_open() {
+    if (!has_word(a_.block(), "open")) return false;
+    if (!operand_) return true;
+    context_.tell("open operand", where_, "in combinations objects that are 'open' are closed");
+    return false;
+  }
+
+  Shapes sphere() {
+    const Node keys = map();
+    tree_.put(keys, "center", vector(a_.vector("the centre")));
+    tree_.put(keys, "radius", number(std::abs(a_.number("the radius"))));
+    return one("sphere", keys);
+  }
+
+  Shapes box() {
+    const Vec3d p = a_.vector("a corner"), q = a_.vector("a corner");
+    const Node keys = map();
+    tree_.put(keys, "min", vector(min(p, q))), tree_.put(keys, "max", vector(max(p, q)));
+    return one("box", keys);
+  }
+
+  Shapes cylinder() {
+    const Node keys = map();
+    tree_.put(keys, "from", vector(a_.vector("an end")));
+    tree_.put(keys, "to", vector(a_.vector("an end")));
+    tree_.put(keys, "radius", number(std::abs(a_.number("the radius"))));
+    const bool open = is_open();
+    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
+    return one("cylinder", keys, !open);
+  }
+
+  Shapes cone() {
+    const Node keys = map();
+    tree_.put(keys, "from", vector(a_.vector("an end")));
+    tree_.put(keys, "from_radius", number(std::abs(a_.number("a radius"))));
+    tree_.put(keys, "to", vector(a_.vector("an end")));
+    tree_.put(keys, "to_radius", number(std::abs(a_.number("a radius"))));
+    const bool open = is_open();
+    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
+    return one("cone", keys, !open);
+  }
+
+  Shapes plane() {
+    const Node keys = map();
+    tree_.put(keys, "normal", vector(a_.vector("the normal")));
+    const double offset = a_.number("the distance");
+    if (offset != 0) tree_.put(keys, "offset", number(offset));
+    return one("plane", keys);
+  }
+
+  Shapes disc() {
+    const Node keys = map();
+    const Vec3d center = a_.vector("the centre"), normal = a_.vector("the normal");
+    const double radius = std::abs(a_.number("the radius"));
+    const double hole = a_.is_numbers() ? std::abs(a_.number("the radius of the hole")) : 0;
+    if (hole > 0 && hole < radius && length(normal) > 0)
+      return ring(center, normal / length(normal), radius, hole);
+    tree_.put(keys, "center", vector(center)), tree_.put(keys, "normal", vector(normal));
+    tree_.put(keys, "radius", number(radius));
+    return one("disk", keys, false);
+  }
+
+  /// A disc with a hole, as a mesh of many sides.
+  Shapes ring(const Vec3d& center, const Vec3d& normal, double radius, double hole) {
+    constexpr int kSides = 256;
+    Vec3d u, v;
+    make_basis(normal, u, v);
+    const auto at = [&](int i, double r) {
+      const double angle = 2 * 3.14159265358979323846 * (i % kSides) / kSides;
+      return MeshCorner{center + u * (r * std::cos(angle)) + v * (r * std::sin(angle))};
+    };
+    MeshMaker made;
+    for (int i = 0; i < kSides; ++i) {
+      made.add({at(i, hole), at(i, radius), at(i + 1, radius)});
+      made.add({at(i, hole), at(i + 1, radius), at(i + 1, hole)});
+    }
+    context_.tell("disc", where_, fmt::format("discs with a hole are meshes of {} sides", kSides));
+    return mesh({{{made, nullptr}}, false});
+  }
+
+  /// What lies about the z axis in scene files and about the y axis here.
+  static void stand_up(Shapes& shapes, const Place& where) {
+    for (Shape& shape : shapes.parts) shape.first.add({Move::Kind::rotate, {90, 0, 0}, {}, where});
+  }
+
+  Shapes torus() {
+    const Node keys = map();
+    tree_.put(keys, "major", number(std::abs(a_.number("the major radius"))));
+    tree_.put(keys, "minor", number(std::abs(a_.number("the minor radius"))));
+    Shapes shapes = one("torus", keys);
+    stand_up(shapes, where_);
+    return shapes;
+  }
+
+  Shapes quadric() {
+    const Vec3d squares = a_.vector("three coefficients"), mixed = a_.vector("three coefficients"),
+                linear = a_.vector("three coefficients");
+    const double c[10] = {squares.x, squares.y, squares.z, mixed.x,  mixed.y,
+                          mixed.z,   linear.x,  linear.y,  linear.z, a_.number("a coefficient")};
+    return one("quadric", tree_.map(where_, "coefficients", tree_.numbers(where_, c)));
+  }
+
+  /// Of a degree, 0: the first argument.
+  std::optional<Shapes> polynomial(int degree) {
+    if (degree == 0) degree = static_cast<int>(a_.number("the order"));
+    const std::vector<double> c = a_.all_numbers();
+    const auto n = static_cast<std::size_t>(degree);
+    if (degree < 2 || degree > 35 || c.size() != (n + 1) * (n + 2) * (n + 3) / 6)
+      context_.fail(where_, fmt::format("a polynomial of order {} has {} coefficients, found {}", degree,
+                                        (n + 1) * (n + 2) * (n + 3) / 6, c.size()));
+    if (degree > 32) return left_out("polynomials here have at most degree 32");
+    std::string text;
+    std::size_t i = 0;
+    for (int x = degree; x >= 0; --x)
+      for (int y = degree - x; y >= 0; --y)
+        for (int z = degree - x - y; z >= 0; --z) {
+          const double value = c[i++];
+          if (value == 0) continue;
+          text += fmt::format("{}{}",
+                              text.empty() ? (value < 0 ? "-" : "")
+                              : value < 0  ? " - "
+                                           : " + ",
+                              std::abs(value));
+          for (const auto& [name, power] : {std::pair{"x", x}, std::pair{"y", y}, std::pair{"z", z}})
+            if (power > 0) text += power == 1 ? fmt::format("*{}", name) : fmt::format("*{}^{}", name, power);
+        }
+    if (text.find_first_of("xyz") == std::string::npos) return left_out("the polynomial is constant");
+    const Node keys = map();
+    tree_.put(keys, "equation", tree_.text(where_, text));
+    Extent box = within_;
+    if (!box.is_finite()) {
+      box = {{-kReach, -kReach, -kReach}, {kReach, kReach, kReach}};
+    } else {
+      // The faces of the bounds lie outside of what bounds it.
+      const Vec3d room = (box.hi - box.lo) * 0.01 + Vec3d{1e-6, 1e-6, 1e-6};
+      box.lo = box.lo - room, box.hi = box.hi + room;
+    }
+    put_bounds(keys, box.lo, box.hi);
+    if (!operand_) tree_.put(keys, "open", tree_.flag(where_, true));
+    return one("polynomial", keys, operand_);
+  }
+
+  Shapes superellipsoid() {
+    const auto e = a_.pair("two exponents");
+    if (e[0] == e[1]) {
+      const Node keys = map();
+      for (const char* key : {"p", "q", "r"}) tree_.put(keys, key, number(std::min(2 / e[0], 1024.0)));
+      return one("superellipsoid", keys);
+    }
+    const Node keys = map();
+    const double p = std::min(2 / e[0], 1024.0), q = e[0] / e[1], r = std::min(2 / e[1], 1024.0);
+    tree_.put(
+        keys, "function",
+        tree_.text(where_, fmt::format("pow(pow(abs(x), {}) + pow(abs(y), {}), {}) + pow(abs(z), {}) - 1", p,
+                                       p, q, r)));
+    put_bounds(keys, {-1.01, -1.01, -1.01}, {1.01, 1.01, 1.01});
+    return one("implicit", keys);
+  }
+
+  // ---- Blobs.
+
+  std::optional<Shapes> blob() {
+    double threshold = 1;
+    Shapes shapes;
+    const Node keys = map(), elements = tree_.list(where_);
+    bool any = false;
+    while (!a_.at_end()) {
+      if (a_.take_word("threshold")) {
+        threshold = a_.number("a threshold");
+      } else if (const Block* const block = a_.peek_block(); block != nullptr && is_component(*block)) {
+        a_.take();
+        any |= add_component(*block, elements);
+      } else if (a_.take_word("component")) {
+        // The order of old scenes.
+        const double strength = a_.number("a strength"), radius = std::abs(a_.number("a radius"));
+        any |= strength > 0;
+        Tree::push(elements, element_node(where_, tree_.vector(where_, a_.vector("a point")), "point",
+                                          strength, radius));
+      } else {
+        break;
+      }
+    }
+    if (!any) return left_out("the blob has no component of positive strength");
+    if (!(threshold > 0)) return left_out("the threshold of the blob is not above 0");
+    tree_.put(keys, "iso", number(threshold)), tree_.put(keys, "elements", elements);
+    return one("metaballs", keys);
+  }
+
+  static bool is_component(const Block& block) {
+    return block.keyword == "sphere" || block.keyword == "cylinder";
+  }
+
+  Node element_node(const Place& where, Node skeleton, std::string_view key, double strength, double radius) {
+    const Node element = tree_.map(where, key, skeleton);
+    tree_.put(element, "weight", tree_.number(where, strength));
+    tree_.put(element, "radius", tree_.number(where, radius));
+    return element;
+  }
+
+  /// Returns whether its strength is positive.
+  bool add_component(const Block& block, Node elements) {
+    Arguments a(context_, block);
+    const bool is_segment = block.keyword == "cylinder";
+    Vec3d from, to;
+    double radius = 0, strength = 0;
+    from = a.vector("a point");
+    if (is_segment) to = a.vector("a point");
+    radius = a.number("a radius");
+    a.take_word("strength");
+    strength = a.number("a strength");
+    Moves moves;
+    while (!a.at_end())
+      if (!take_moves(context_, a, moves)) {
+        const Block* const look = a.peek_block();
+        if (look != nullptr && (look->keyword == "texture" || look->keyword == "pigment"))
+          context_.tell("blob texture", look->where, "textures of single components of blobs are left out");
+        a.take();
+      }
+    const Place& w = block.where;
+    const auto& m = moves.all.m;
+    const Vec3d scale{std::hypot(m[0][0], m[1][0], m[2][0]), std::hypot(m[0][1], m[1][1], m[2][1]),
+                      std::hypot(m[0][2], m[1][2], m[2][2])};
+    const bool even = max_component(abs(scale - Vec3d{scale.x, scale.x, scale.x})) < 1e-9 * scale.x;
+    if (!even)
+      context_.tell("blob scale", w,
+                    "components of blobs that are stretched along one axis are scaled evenly");
+    const double size = even ? scale.x : std::cbrt(scale.x * scale.y * scale.z);
+    radius = std::abs(radius) * size;
+    const Node at = tree_.vector(w, moves.all.point(from));
+    Node ends = at;
+    if (is_segment) {
+      ends = tree_.map(w, "from", at);
+      tree_.put(ends, "to", tree_.vector(w, moves.all.point(to)));
+    }
+    Tree::push(elements, element_node(w, ends, is_segment ? "segment" : "point", strength, radius));
+    return strength > 0;
+  }
+
+  // ---- Surfaces of revolution.
+
+  std::vector<ProfilePoint> profile() {
+    const auto count = static_cast<std::size_t>(std::max(0.0, a_.number("a count")));
+    std::vector<ProfilePoint> points;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto p = a_.pair("a point");
+      points.push_back({p[0], p[1]});
+    }
+    return points;
+  }
+
+  Node profile_node(std::string_view kind, const std::vector<ProfilePoint>& points, bool open) {
+    const Node keys = map(), list = tree_.list(where_);
+    tree_.put(keys, "profile", tree_.word(where_, kind));
+    for (const ProfilePoint& p : points) {
+      const double pair[2] = {p.radius, p.height};
+      Tree::push(list, tree_.numbers(where_, pair));
+    }
+    tree_.put(keys, "points", list);
+    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
+    return keys;
+  }
+
+  std::optional<Shapes> sor() {
+    std::vector<ProfilePoint> points = profile();
+    if (points.size() < 4) return left_out("a surface of revolution needs 4 points");
+    // Points at the ends that only give directions may stand at the height of their neighbours.
+    const std::size_t last = points.size() - 1;
+    const double nudge = 1e-9 * std::abs(points[last - 1].height - points[1].height);
+    if (points[0].height == points[1].height) points[0].height -= nudge;
+    if (points[last].height == points[last - 1].height) points[last].height += nudge;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      if (!(points[i - 1].height < points[i].height)) return left_out("the heights of a sor ascend");
+    const bool open = is_open();
+    for (ProfilePoint& p : points) p.radius = std::abs(p.radius);
+    if (const auto height = profile_crosses_axis({points, RevolutionShape::Profile::sor, open}))
+      return left_out(fmt::format("the profile crosses the axis at height {:.6g}", *height));
+    return one("revolution", profile_node("sor", points, open), !open);
+  }
+
+  std::optional<Shapes> lathe() {
+    std::string_view spline = "linear_spline";
+    while (!a_.is_numbers() && !a_.at_end()) {
+      if (a_.peek_word().ends_with("_spline")) spline = a_.peek_word();
+      a_.take();
+    }
+    const std::vector<ProfilePoint> points = profile();
+    Shapes shapes;
+    for (const std::vector<ProfilePoint>& piece : bezier_profiles(points, spline)) {
+      const bool is_closed = piece.front().radius == 0 && piece.back().radius == 0;
+      const bool open = !is_closed && !operand_;
+      if (const std::string wrong = why_bad_profile({piece, open}); !wrong.empty()) {
+        context_.warn(where_, fmt::format("this lathe is left out: {}", wrong));
+        continue;
+      }
+      shapes.solid &= !open;
+      shapes.parts.push_back({"revolution", profile_node("bezier", piece, open), nullptr, {}});
+    }
+    if (shapes.parts.empty()) return std::nullopt;
+    return shapes;
+  }
+
+  /// Chains of control points.
+  static std::vector<std::vector<ProfilePoint>> bezier_profiles(const std::vector<ProfilePoint>& p,
+                                                                std::string_view spline) {
+    const auto mix = [](const ProfilePoint& a, double s, const ProfilePoint& b, double t,
+                        const ProfilePoint& c, double u) {
+      return ProfilePoint{a.radius * s + b.radius * t + c.radius * u,
+                          a.height * s + b.height * t + c.height * u};
+    };
+    std::vector<std::vector<ProfilePoint>> out;
+    if (spline == "bezier_spline") {
+      for (std::size_t i = 0; i + 3 < p.size(); i += 4) {
+        if (out.empty() ||
+            !(out.back().back().radius == p[i].radius && out.back().back().height == p[i].height))
+          out.push_back({p[i]});
+        out.back().insert(out.back().end(), {p[i + 1], p[i + 2], p[i + 3]});
+      }
+      return out;
+    }
+    const bool quadratic = spline == "quadratic_spline", cubic = spline == "cubic_spline";
+    if (cubic && p.size() >= 4) return {curve_through(p)};
+    const std::size_t first = quadratic ? 1 : 0;
+    if (cubic || p.size() < first + 2) return out;
+    out.push_back({p[first]});
+    for (std::size_t i = first; i + 1 < p.size(); ++i) {
+      const ProfilePoint &b = p[i], &c = p[i + 1];
+      if (quadratic) {
+        const ProfilePoint& a = p[i - 1];
+        out[0].push_back(mix(b, 1, c, 1.0 / 6, a, -1.0 / 6));
+        out[0].push_back(mix(c, 0.5, b, 2.0 / 3, a, -1.0 / 6));
+      } else {
+        if (b.radius == c.radius && b.height == c.height) continue;
+        out[0].push_back(mix(b, 2.0 / 3, c, 1.0 / 3, b, 0)),
+            out[0].push_back(mix(b, 1.0 / 3, c, 2.0 / 3, b, 0));
+      }
+      out[0].push_back(c);
+    }
+    return out;
+  }
+
+  // ---- Functions and images.
+
+  std::optional<Shapes> isosurface() {
+    std::shared_ptr<const Function> function;
+    double threshold = 0;
+    Vec3d lo{-1, -1, -1}, hi{1, 1, 1}, center{0, 0, 0};
+    double radius = 0;
+    while (!a_.at_end()) {
+      if (const auto* const f = std::get_if<std::shared_ptr<const Function>>(&a_.peek().value)) {
+        function = *f;
+        a_.take();
+      } else if (a_.take_word("threshold")) {
+        threshold = a_.number("a threshold");
+      } else if (const Block* const block = a_.peek_block();
+                 block != nullptr && block->keyword == "contained_by") {
+        Arguments container(context_, *block);
+        const Block* const shape = container.peek_block();
+        if (shape == nullptr) context_.fail(block->where, "expected a box or a sphere");
+        Arguments s(context_, *shape);
+        if (shape->keyword == "sphere") {
+          center = s.vector("the centre"), radius = std::abs(s.number("the radius"));
+          lo = center - Vec3d{radius, radius, radius}, hi = center + Vec3d{radius, radius, radius};
+        } else {
+          const Vec3d p = s.vector("a corner"), q = s.vector("a corner");
+          lo = min(p, q), hi = max(p, q);
+        }
+        a_.take();
+      } else if (!take_iso_setting()) {
+        break;
+      }
+    }
+    if (!function) context_.fail(where_, "an isosurface needs a function");
+    const std::optional<std::string> text = function_text(context_, *function, where_, threshold);
+    if (!text) return std::nullopt;
+    if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
+      return left_out("what contains the isosurface has no volume");
+    const bool open = is_open();
+    // The sphere at which an open surface ends is not seen.
+    const bool cut = radius > 0 && open;
+    if (cut) {
+      const Vec3d room{radius * 0.01, radius * 0.01, radius * 0.01};
+      lo = lo - room, hi = hi + room;
+    }
+    const Node keys = map();
+    tree_.put(keys, "function", tree_.text(where_, *text));
+    put_bounds(keys, lo, hi);
+    if (open && !cut) tree_.put(keys, "open", tree_.flag(where_, true));
+    Shapes shapes = one("implicit", keys, !open || cut);
+    if (radius > 0) {
+      const Node ball = map();
+      tree_.put(ball, "center", vector(center)), tree_.put(ball, "radius", number(radius));
+      shapes.parts.push_back({"sphere", ball, nullptr, {}, cut});
+      shapes.meet = true;
+    }
+    return shapes;
+  }
+
+  /// What says how the surface is found.
+  bool take_iso_setting() {
+    for (const std::string_view word : {"max_gradient", "accuracy", "max_trace"})
+      if (a_.take_word(word)) {
+        a_.number("a number");
+        return true;
+      }
+    if (a_.take_word("evaluate")) {
+      while (a_.is_numbers()) a_.take();
+      return true;
+    }
+    return a_.take_word("all_intersections") || a_.take_word("open");
+  }
+
+  std::optional<Shapes> julia() {
+    const auto c = std::get_if<Numbers>(&a_.peek().value);
+    if (a_.at_end() || c == nullptr) context_.fail(a_.where(), "expected a vector of 4 numbers");
+    const std::array<double, 5> v = c->v;
+    a_.take();
+    double iterations = 20, slice = 0;
+    std::array<double, 5> normal{0, 0, 0, 1};
+    bool known = true;
+    while (!a_.at_end()) {
+      if (a_.take_word("max_iteration")) {
+        iterations = a_.number("a number");
+      } else if (a_.take_word("precision")) {
+        a_.number("a number");
+      } else if (a_.take_word("slice")) {
+        if (a_.is_numbers()) normal = std::get<Numbers>(a_.take().value).v;
+        slice = a_.number("a distance");
+      } else if (a_.take_word("quaternion") || a_.take_word("sqr")) {
+      } else if (a_.take_word("hypercomplex")) {
+        known = false;
+      } else if (a_.peek_word() == "cube" || a_.peek_word() == "exp" || a_.peek_word() == "reciprocal" ||
+                 a_.peek_word() == "sin" || a_.peek_word() == "cos" || a_.peek_word() == "pwr" ||
+                 a_.peek_word() == "ln") {
+        known = false, a_.take();
+      } else {
+        break;
+      }
+    }
+    if (!known || normal[0] != 0 || normal[1] != 0 || normal[2] != 0 || normal[3] == 0)
+      return left_out(
+          "of julia fractals only squares of quaternions are read, in slices along the fourth axis");
+    if (std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) > 2)
+      return left_out("the fractal is empty");
+    const Node keys = map();
+    tree_.put(keys, "c", tree_.numbers(where_, std::span(v.data(), 4)));
+    if (slice != 0) tree_.put(keys, "slice", number(slice / normal[3]));
+    tree_.put(keys, "iterations", number(std::clamp(std::round(iterations), 1.0, 24.0)));
+    return one("julia", keys);
+  }
+
+  std::optional<Shapes> height_field() {
+    std::string path;
+    Place at = where_;
+    bool smooth = false;
+    double water = 0;
+    while (!a_.at_end()) {
+      if (const auto* const text = std::get_if<std::string>(&a_.peek().value)) {
+        path = *text, at = a_.where();
+        a_.take();
+      } else if (a_.take_word("smooth")) {
+        smooth = a_.flag();
+      } else if (a_.take_word("water_level")) {
+        water = a_.number("a height");
+      } else if (a_.peek_word() == "png" || a_.peek_word() == "jpeg" || a_.peek_word() == "tga" ||
+                 a_.peek_word() == "gif" || a_.peek_word() == "pgm" || a_.peek_word() == "ppm" ||
+                 a_.peek_word() == "tiff" || a_.peek_word() == "sys" || a_.peek_word() == "pot" ||
+                 a_.peek_word() == "exr" || a_.peek_word() == "hdr") {
+        a_.take();
+      } else {
+        break;
+      }
+    }
+    if (path.empty()) return left_out("of height fields only those of image files are read");
+    path = find_file(context_, at, path);
+    try {
+      read_heights(path, kMaxHeightSide, kMaxHeightSamples);
+    } catch (const Error& error) {
+      return left_out(error.what());
+    }
+    if (smooth)
+      context_.tell("smooth height field", where_, "height fields are triangles without smooth normals");
+    const Node keys = map();
+    tree_.put(keys, "file", tree_.text(at, path));
+    tree_.put(keys, "size", vector({1, 1, 1}));
+    tree_.put(keys, "interpolation", tree_.word(where_, "triangles"));
+    tree_.put(keys, "base", number(-1e-4));
+    Shapes shapes = one("height_field", keys);
+    // The upper edge of the image lies at z = 1, not at the least z.
+    shapes.parts[0].first.add({Move::Kind::scale, {1, 1, -1}, {}, where_});
+    shapes.parts[0].first.add({Move::Kind::translate, {0.5, 0, 0.5}, {}, where_});
+    if (water > 0) {
+      const Node above = map();
+      tree_.put(above, "normal", vector({0, -1, 0})), tree_.put(above, "offset", number(-water));
+      shapes.parts.push_back({"plane", above, nullptr, {}});
+      shapes.meet = true;
+    }
+    return shapes;
+  }
+
+  Shapes mesh(MadeMesh made) {
+    Shapes shapes;
+    bool solid = made.solid;
+    std::size_t inside_vectors = 0;
+    for (const Element& e : a_.block().elements)
+      if (const auto* const word = std::get_if<Word>(&e.value))
+        inside_vectors += word->text == "inside_vector";
+    solid |= inside_vectors > 0;
+    if (operand_ && solid && made.parts.size() > 1) {
+      context_.tell("textured mesh operand", where_, "in combinations meshes show their first texture only");
+      MeshMaker whole;
+      for (MeshPart& part : made.parts) whole.add(part.mesh);
+      made.parts = {{std::move(whole), made.parts[0].texture}};
+    }
+    for (const MeshPart& part : made.parts) {
+      if (part.mesh.empty()) continue;
+      const std::string& name = a_.block().name;
+      const std::string file =
+          add_mesh(context_, part.mesh, name.empty() ? std::string(a_.block().keyword) : name);
+      const Node keys = tree_.map(where_, "file", tree_.text(where_, file));
+      if (inside_vectors > 0 && operand_) tree_.put(keys, "solid", tree_.word(where_, "winding"));
+      shapes.parts.push_back({"mesh", keys, part.texture, {}});
+    }
+    shapes.solid = solid;
+    return shapes;
+  }
+
+  Context& context_;
+  Tree& tree_;
+  Arguments& a_;
+  Place where_;
+  Extent within_;
+  bool operand_;
+};
+
+}  // namespace
+
+std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const Extent& within,
+                                  bool operand) {
+  return ShapeMaker(context, arguments, within, operand).make();
+}
+
+}  // namespace oktett::pov

@@ -1,0 +1,109 @@
+#include "io/pov/translate/translate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/pov/translate/objects.h"
+#include "io/pov/translate/view.h"
+
+namespace oktett::pov {
+namespace {
+
+const Block* block_of(const Element& statement) {
+  const auto* const block = std::get_if<std::shared_ptr<const Block>>(&statement.value);
+  return block != nullptr ? block->get() : nullptr;
+}
+
+/// The gamma in which the scene's colours are meant and its light is computed. Scenes of before 3.7 that
+/// state none show their numbers as they are, which screens then decode.
+double gamma_of(const Document& document) {
+  constexpr double kScreen = 2.2;
+  double gamma = document.version < 3.7 ? kScreen : 1;
+  for (const Element& statement : document.statements) {
+    const Block* const block = block_of(statement);
+    if (block == nullptr || block->keyword != "global_settings") continue;
+    for (std::size_t i = 0; i + 1 < block->elements.size(); ++i) {
+      const auto* const word = std::get_if<Word>(&block->elements[i].value);
+      if (word == nullptr || word->text != "assumed_gamma") continue;
+      if (const auto* const number = std::get_if<Numbers>(&block->elements[i + 1].value))
+        gamma = number->v[0];
+      if (const auto* const name = std::get_if<Word>(&block->elements[i + 1].value);
+          name && name->text == "srgb")
+        gamma = kScreen;
+    }
+  }
+  return std::isfinite(gamma) ? std::clamp(gamma, 0.1, 10.0) : 1;
+}
+
+/// Statements that stand for themselves.
+void read_statement(Context& context, const std::shared_ptr<const Block>& block, ObjectWriter& objects,
+                    Surroundings& s) {
+  const std::string_view k = block->keyword;
+  if (is_object(k)) return objects.add(block);
+  if (k == "light_source") return objects.add_light(block, {});
+  if (k == "global_settings") return read_global_settings(context, *block, s);
+  if (k == "background") return read_background(context, *block, s);
+  if (k == "sky_sphere") return read_sky_sphere(context, *block, s);
+  if (k == "light_group") {
+    context.tell("light_group", block->where, "lights of a 'light_group' light all objects");
+    for (const Element& e : block->elements)
+      if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value))
+        if (*inner && (is_object((*inner)->keyword) || (*inner)->keyword == "light_source"))
+          read_statement(context, *inner, objects, s);
+    return;
+  }
+  if (k == "camera") return;
+  context.tell(std::string(k), block->where, fmt::format("'{}' has no meaning here, and is left out", k));
+}
+
+}  // namespace
+
+TranslatedScene translate(const Document& document, const TranslateOptions& options) {
+  Context context(document);
+  context.warnings = document.warnings;
+  context.gamma = gamma_of(document);
+  context.mesh_prefix = options.mesh_prefix;
+  Tree& tree = context.tree;
+  const Place top;
+  context.materials = tree.map(top), context.define = tree.map(top);
+  context.objects = tree.list(top), context.lights = tree.list(top);
+  const Block* camera = nullptr;
+  Surroundings s;
+  ObjectWriter objects(context);
+  for (const Element& statement : document.statements) {
+    const auto* const block = std::get_if<std::shared_ptr<const Block>>(&statement.value);
+    if (block == nullptr || *block == nullptr) continue;
+    if ((*block)->keyword == "camera") camera = block->get();
+    read_statement(context, *block, objects, s);
+  }
+  const Node root = tree.map(top);
+  tree.put(root, "oktett", tree.number(top, 1));
+  tree.put(root, "camera", camera_node(context, camera));
+  const Node film = tree.map(top);
+  tree.put(film, "width", tree.number(top, options.width)),
+      tree.put(film, "height", tree.number(top, options.height));
+  if (context.gamma != 1) tree.put(film, "gamma", tree.number(top, context.gamma));
+  tree.put(root, "film", film);
+  const Node integrator = tree.map(s.settings_place);
+  tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
+  tree.put(integrator, "depth",
+           tree.number(s.settings_place, std::clamp(std::round(s.max_trace_level), 0.0, 64.0)));
+  tree.put(root, "integrator", integrator);
+  tree.put(root, "background", color_node(tree, s.background_place, s.background));
+  if (!(s.ambient == Vec3d{1, 1, 1}))
+    tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
+  if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
+  tree.put(root, "lights", context.lights);
+  if (!context.define->items.empty()) tree.put(root, "define", context.define);
+  tree.put(root, "objects", context.objects);
+  TranslatedScene out;
+  out.root = root;
+  out.files = tree.take();
+  out.meshes = std::move(context.meshes), out.warnings = std::move(context.warnings);
+  return out;
+}
+
+}  // namespace oktett::pov

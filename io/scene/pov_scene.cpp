@@ -1,0 +1,52 @@
+#include "io/scene/pov_scene.h"
+
+#include <charconv>
+#include <filesystem>
+#include <utility>
+
+#include "io/mesh/mesh_file.h"
+#include "io/ply/ply.h"
+#include "io/pov/read_pov.h"
+#include "io/pov/translate/translate.h"
+#include "io/scene/shape_text.h"
+#include "io/text/files.h"
+#include "io/yaml/write_yaml.h"
+
+namespace oktett {
+
+bool is_pov_file(const std::string& path) { return lower_case_extension(path) == ".pov"; }
+
+pov::TranslatedScene read_pov_tree(const std::string& path, const Definitions& definitions, const Film& film,
+                                   const std::string& mesh_prefix) {
+  pov::ReadOptions options;
+  options.image_width = static_cast<int>(film.width), options.image_height = static_cast<int>(film.height);
+  for (const auto& [name, text] : definitions) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size())
+      options.definitions[name] = value;
+    else
+      options.definitions[name] = text;
+  }
+  const pov::Document document = pov::read_pov(path, options);
+  return pov::translate(document, {film.width, film.height, mesh_prefix});
+}
+
+PovConversion convert_pov(const std::string& input, const std::string& output, const Definitions& definitions,
+                          const Film& film) {
+  namespace fs = std::filesystem;
+  const fs::path path(output);
+  const pov::TranslatedScene scene = read_pov_tree(input, definitions, film, path.stem().string() + "-");
+  PovConversion done;
+  for (const auto& [name, mesh] : scene.meshes) {
+    MeshFile file;
+    file.mesh = *mesh;
+    done.meshes.push_back((path.parent_path() / name).string());
+    write_ply(done.meshes.back(), file, false);
+  }
+  write_text(output, yaml_text(*scene.root));
+  done.warnings = scene.warnings;
+  return done;
+}
+
+}  // namespace oktett

@@ -1,0 +1,272 @@
+// Scenes in POV-Ray's language: the scene files that say the same.
+
+#include "io/scene/pov_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "io/pov/translate/translate.h"
+#include "io/scene/scene_file.h"
+#include "io/yaml/write_yaml.h"
+#include "render/picture/render.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett::pov_scene_test {
+namespace {
+
+using test::TempDir;
+
+/// Scenes as files of a folder.
+class PovFiles {
+ public:
+  pov::TranslatedScene translate(const std::string& text) const {
+    return read_pov_tree(dir.write("scene.pov", text), {}, kPovFilm);
+  }
+  /// The value of a key of the top level in one line.
+  std::string section(const std::string& text, const std::string& key) const {
+    const pov::TranslatedScene scene = translate(text);
+    for (std::size_t i = 0; i + 1 < scene.root->items.size(); i += 2)
+      if (scene.root->items[i]->text == key) return flow_text(*scene.root->items[i + 1]);
+    return "none";
+  }
+  /// The only object, whose look is `material` or nothing.
+  std::string object(const std::string& text) const { return without_look(section(text, "objects")); }
+  /// All warnings, a line each.
+  std::string warnings(const std::string& text) const {
+    std::string all;
+    for (const Warning& w : translate(text).warnings) all += without_folder(to_string(w)) + "\n";
+    return all;
+  }
+  std::string error(const std::string& text) const {
+    try {
+      load_scene(dir.write("scene.pov", text));
+    } catch (const Error& e) {
+      return without_folder(e.what());
+    }
+    return "no error";
+  }
+
+  TempDir dir;
+
+ private:
+  static std::string without_look(std::string text) {
+    const std::string look = ", material: material";
+    for (std::size_t at; (at = text.find(look)) != std::string::npos;) text.erase(at, look.size());
+    if (text.starts_with("[") && text.ends_with("]")) text = text.substr(1, text.size() - 2);
+    return text;
+  }
+  std::string without_folder(std::string text) const {
+    const std::string folder = dir.path().string() + "/";
+    for (std::size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+    return text;
+  }
+};
+
+struct Case {
+  std::string pov, yaml;
+};
+void expect_objects(const std::vector<Case>& cases) {
+  const PovFiles files;
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.pov);
+    EXPECT_EQ(files.object("#version 3.7;\n" + c.pov), c.yaml);
+  }
+}
+
+TEST(PovScene, ShapesHaveTheirKeys) {
+  expect_objects({
+      {"sphere { <1,2,3>, 0.5 }", "{sphere: {center: [1, 2, 3], radius: 0.5}}"},
+      {"box { <1,2,3>, <0,5,-1> }", "{box: {min: [0, 2, -1], max: [1, 5, 3]}}"},
+      {"cylinder { 0, y, 2 }", "{cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 2}}"},
+      {"cylinder { 0, y, 2 open }", "{cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 2, open: true}}"},
+      {"cone { 0, 1, y, 0.5 }", "{cone: {from: [0, 0, 0], from_radius: 1, to: [0, 1, 0], to_radius: 0.5}}"},
+      {"plane { y, -1 }", "{plane: {normal: [0, 1, 0], offset: -1}}"},
+      {"disc { 0, y, 2 }", "{disk: {center: [0, 0, 0], normal: [0, 1, 0], radius: 2}}"},
+      {"torus { 2, 0.5 }", "{torus: {major: 2, minor: 0.5}, transform: {rotate: [90, 0, 0]}}"},
+      {"quadric { <1,2,3>, <4,5,6>, <7,8,9>, -1 }",
+       "{quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, -1]}}"},
+      {"superellipsoid { <0.5, 0.5> }", "{superellipsoid: {p: 4, q: 4, r: 4}}"},
+      {"triangle { 0, x, y }", "{mesh: {file: triangle.ply}}"},
+      {"sor { 4, <0.5,0>, <1,1>, <0.5,2>, <0.5,3> }",
+       "{revolution: {profile: sor, points: [[0.5, 0], [1, 1], [0.5, 2], [0.5, 3]]}}"},
+      {"lathe { linear_spline 2, <1,0>, <1,3> }",
+       "{revolution: {profile: bezier, points: [[1, 0], [1, 1], [1, 2], [1, 3]], open: true}}"},
+      {"blob { threshold 0.6 sphere { x, 2, 1 } cylinder { 0, y, 1, -0.5 } }",
+       "{metaballs: {iso: 0.6, elements: [{point: [1, 0, 0], weight: 1, radius: 2}, {segment: {from: [0, 0, "
+       "0], to: [0, 1, "
+       "0]}, weight: -0.5, radius: 1}]}}"},
+      {"isosurface { function { x*x + y - 2 } threshold 0.5 }",
+       "{implicit: {function: \"(((x * x) + y) - 2) - 0.5\", bounds: {min: [-1, -1, -1], max: [1, 1, 1]}}}"},
+      {"julia_fractal { <-0.1, 0.8, 0, 0> max_iteration 8 }",
+       "{julia: {c: [-0.1, 0.8, 0, 0], iterations: 8}}"},
+  });
+}
+
+TEST(PovScene, PolynomialsAreCutAtWhatBoundsThem) {
+  const PovFiles files;
+  const std::string text =
+      files.object("#version 3.7;\npoly { 2, <1,0,0,0, 0,0,0, 1,0, -1> clipped_by { sphere { 0, 2 } } }");
+  EXPECT_NE(text.find("equation: \"1*x^2 + 1*z^2 - 1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("bounds: {min: [-2.04"), std::string::npos) << text;
+}
+
+TEST(PovScene, TransformsKeepTheirOrder) {
+  expect_objects({
+      {"sphere { 0, 1 scale 2 rotate y*30 translate x }",
+       "{sphere: {center: [0, 0, 0], radius: 1}, transform: [{scale: 2}, {rotate: [0, 30, 0]}, {translate: "
+       "[1, 0, 0]}]}"},
+      {"sphere { 0, 1 matrix <1,2,3, 4,5,6, 7,8,10, 11,12,13> }",
+       "{sphere: {center: [0, 0, 0], radius: 1}, transform: {matrix: [1, 4, 7, 11, 2, 5, 8, 12, 3, 6, 10, "
+       "13]}}"},
+      {"#declare T = transform { translate x }\nsphere { 0, 1 transform { T inverse } }",
+       "{sphere: {center: [0, 0, 0], radius: 1}, transform: {matrix: [1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, "
+       "0]}}"},
+      {"object { sphere { 0, 1 scale 2 } translate y }",
+       "{sphere: {center: [0, 0, 0], radius: 1}, transform: [{scale: 2}, {translate: [0, 1, 0]}]}"},
+  });
+}
+
+TEST(PovScene, CombinationsHaveNoComplements) {
+  const std::string a = "sphere: {center: [0, 0, 0], radius: 1}",
+                    b = "sphere: {center: [1, 0, 0], radius: 1}";
+  const std::string x = "sphere { 0, 1 }", y = "sphere { x, 1 }", y_inverse = "sphere { x, 1 inverse }";
+  expect_objects({
+      {"intersection {" + x + y + "}", "{intersection: [{" + a + "}, {" + b + "}]}"},
+      {"intersection {" + x + y_inverse + "}", "{difference: [{" + a + "}, {" + b + "}]}"},
+      {"difference {" + x + y_inverse + "}", "{intersection: [{" + a + "}, {" + b + "}]}"},
+      {"merge {" + x + y + "}", "{union: [{" + a + "}, {" + b + "}]}"},
+      {"union {" + x + y + "}", "{group: [{" + a + "}, {" + b + "}]}"},
+      {"intersection { box { -1, 1 } merge {" + x + y_inverse + "} }",
+       "{difference: [{box: {min: [-1, -1, -1], max: [1, 1, 1]}}, {difference: [{" + b + "}, {" + a +
+           "}]}]}"},
+  });
+}
+
+TEST(PovScene, WhatCutsIsNotSeen) {
+  const PovFiles files;
+  EXPECT_EQ(files.object("#version 3.7;\nsphere { 0, 1 clipped_by { plane { y, 0 } } }"),
+            "{intersection: [{sphere: {center: [0, 0, 0], radius: 1}}, {plane: {normal: [0, 1, 0]}, "
+            "material: invisible}]}");
+}
+
+TEST(PovScene, WhatIsUsedOftenIsAPrototype) {
+  const std::string text =
+      "#version 3.7;\n#declare Thing = union { sphere { 0, 1 } sphere { x, 1 } box { -1, 1 } cone { 0, 1, y, "
+      "0 } pigment { rgb 1 } }\n"
+      "object { Thing }\nobject { Thing translate 3*x }\nobject { Thing pigment { rgb x } }\n";
+  const PovFiles files;
+  const std::string objects = files.section(text, "objects");
+  EXPECT_TRUE(objects.starts_with(
+      "[{instance: Thing, name: Thing}, {instance: Thing, transform: {translate: [3, 0, 0]}, "))
+      << objects;
+  EXPECT_TRUE(files.section(text, "define").starts_with("{Thing: {group: ["))
+      << files.section(text, "define");
+}
+
+TEST(PovScene, LooksBecomeMaterials) {
+  const PovFiles files;
+  const auto material = [&](const std::string& look) {
+    return files.section("#version 3.7;\nsphere { 0, 1 " + look + " }", "materials");
+  };
+  EXPECT_EQ(material("pigment { rgb <1, 0.5, 0> }"),
+            "{material: {color: [1, 0.5, 0], ambient: 0.1, diffuse: 0.6}}");
+  EXPECT_EQ(
+      material("pigment { rgb 1 } finish { ambient 0 diffuse 1 phong 0.5 phong_size 20 reflection 0.25 }"),
+      "{material: {color: [1, 1, 1], ambient: 0, diffuse: 1, specular: 0.5, phong: 20, reflection: 0.25}}");
+  // Half of the light of the halfway vector's exponent 1 / 0.01: a fourth of it about the mirrored ray.
+  EXPECT_EQ(material("pigment { rgb 1 } finish { specular 1 roughness 0.01 }"),
+            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, specular: 1, phong: 25}}");
+  EXPECT_EQ(material("pigment { rgbf <1, 0.5, 1, 0.75> } interior { ior 1.5 }"),
+            "{material: {color: [0.25, 0.125, 0.25], ambient: 0.1, diffuse: 0.6, transparency: 0.75, filter: "
+            "[1, 0.5, 1], "
+            "ior: 1.5}}");
+  EXPECT_EQ(
+      material("pigment { checker rgb 0, rgb 1 scale 2 }"),
+      "{material: {color: {checker: {colors: [[0, 0, 0], [1, 1, 1]], transform: {scale: 2}}}, ambient: 0.1, "
+      "diffuse: 0.6}}");
+  // What is moved before it gets its texture.
+  EXPECT_EQ(material("translate x pigment { checker rgb 0, rgb 1 }"),
+            "{material: {color: {checker: {colors: [[0, 0, 0], [1, 1, 1]], transform: {matrix: [1, 0, 0, -1, "
+            "0, 1, 0, 0, 0, 0, "
+            "1, 0]}}}, ambient: 0.1, diffuse: 0.6}}");
+}
+
+TEST(PovScene, CamerasAreFrames) {
+  const PovFiles files;
+  EXPECT_EQ(
+      files.section("#version 3.7;\nsphere { 0, 1 }", "camera"),
+      "{from: [0, 0, 0], frame: {right: [1.3333333333333333, 0, 0], up: [0, 1, 0], direction: [0, 0, 1]}}");
+  EXPECT_EQ(
+      files.section("#version 3.7;\ncamera { location -5*z right 2*x up y look_at 0 angle 90 }", "camera"),
+      "{from: [0, 0, -5], frame: {right: [2, 0, 0], up: [0, 1, 0], direction: [0, 0, 1.0000000000000002]}}");
+}
+
+TEST(PovScene, LightsAndSurroundings) {
+  const PovFiles files;
+  const std::string scene =
+      "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 7 ambient_light rgb 2 }\nbackground "
+      "{ rgb <0, 0.5, 1> }\n"
+      "light_source { <1,2,3>, rgb 1 }\nlight_source { 5*y, rgb 0.5 spotlight point_at 0 radius 10 falloff "
+      "20 }\n"
+      "light_source { 5*y, rgb 1 parallel point_at x }\n";
+  EXPECT_EQ(files.section(scene, "lights"),
+            "[{point: {position: [1, 2, 3], color: [1, 1, 1]}}, {spot: {position: [0, 5, 0], at: [0, 0, 0], "
+            "outer_angle: 20, "
+            "inner_angle: 10, color: [0.5, 0.5, 0.5], falloff: false}}, {directional: {direction: [1, -5, "
+            "0], color: [1, 1, "
+            "1]}}]");
+  EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
+  EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");
+  EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 7}");
+}
+
+TEST(PovScene, WhatCannotBeMeantIsToldOnce) {
+  const PovFiles files;
+  EXPECT_EQ(
+      files.warnings("#version 3.7;\nsphere { 0, 1 normal { bumps 1 } }\nsphere { x, 1 normal { bumps 1 } }\n"
+                     "intersection { box { -1, 1 } triangle { 0, x, y } }\n"),
+      "scene.pov:2:15: warning: 'normal' has no meaning here: surfaces are smooth\n"
+      "scene.pov:4:30: warning: 'triangle' has no inside here, and is left out of the combination\n");
+}
+
+TEST(PovScene, ErrorsHaveTheirPlace) {
+  const PovFiles files;
+  EXPECT_EQ(files.error("#version 3.7;\nsphere { 0 }"), "scene.pov:2:1: expected the radius in 'sphere'");
+  EXPECT_EQ(files.error("#version 3.7;\nquartic { <1, 2> }"),
+            "scene.pov:2:1: a polynomial of order 4 has 35 coefficients, found 2");
+}
+
+/// Both ways show the same bits.
+TEST(PovScene, ConvertedScenesShowTheSame) {
+  const std::string scene =
+      "#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { location <1, 2, -5> look_at 0 }\n"
+      "light_source { <3, 5, -4>, rgb 1 }\nplane { y, -1 pigment { checker rgb 0.2, rgb 0.8 } }\n"
+      "difference { sphere { 0, 1 } box { -0.5, <0.5, 2, 0.5> } pigment { rgb <1, 0.2, 0.1> } finish { phong "
+      "1 } }\n"
+      "mesh { triangle { <-2,-1,0>, <-1,-1,0>, <-1.5,0.3,0.1> } triangle { <-2,-1,0>, <-1,-1,0>, "
+      "<-1.5,-0.3,1.1> } pigment { rgb y } }\n"
+      "prism { cubic_spline 0, 1, 7, <0.3,0.3>, <0,0>, <0.5,0>, <0.5,0.5>, <0,0.5>, <0,0>, <0.5,0> translate "
+      "x pigment { rgb z } }\n";
+  const PovFiles files;
+  const std::string input = files.dir.write("scene.pov", scene), output = files.dir.file("scene.yaml");
+  const PovConversion done = convert_pov(input, output, {});
+  EXPECT_EQ(done.meshes.size(), 2u);
+  const auto picture = [](const std::string& path) {
+    Scene loaded = load_scene(path);
+    loaded.film.width = 80, loaded.film.height = 60;
+    return render(std::move(loaded), {}).picture;
+  };
+  const Picture a = picture(input), b = picture(output);
+  ASSERT_EQ(a.planes.size(), b.planes.size());
+  for (const PicturePlane& plane : a.planes) {
+    const PicturePlane* const other = b.find(plane.name);
+    ASSERT_NE(other, nullptr);
+    EXPECT_TRUE(std::ranges::equal(plane.values, other->values)) << plane.name;
+  }
+}
+
+}  // namespace
+}  // namespace oktett::pov_scene_test
