@@ -85,6 +85,33 @@ TEST(PovScene, ShapesHaveTheirKeys) {
       {"cone { 0, 1, y, 0.5 }", "{cone: {from: [0, 0, 0], from_radius: 1, to: [0, 1, 0], to_radius: 0.5}}"},
       {"plane { y, -1 }", "{plane: {normal: [0, 1, 0], offset: -1}}"},
       {"disc { 0, y, 2 }", "{disk: {center: [0, 0, 0], normal: [0, 1, 0], radius: 2}}"},
+      {"disc { 0, y, 2, 1 }", "{disk: {center: [0, 0, 0], normal: [0, 1, 0], radius: 2, inner_radius: 1}}"},
+      {"prism { 1, 0, 4, <0,0>, <1,0>, <0,1>, <0,0> }",
+       "{prism: {outlines: [[[0, 0], [1, 0], [0, 1], [0, 0]]], from: 0, to: 1}}"},
+      {"prism { linear_sweep linear_spline 0, 1, 8, <0,0>, <4,0>, <0,4>, <0,0>, <1,1>, <2,1>, <1,2>, <1,1> "
+       "open }",
+       "{prism: {outlines: [[[0, 0], [4, 0], [0, 4], [0, 0]], [[1, 1], [2, 1], [1, 2], [1, 1]]], from: 0, "
+       "to: 1, "
+       "open: true}}"},
+      {"prism { conic_sweep quadratic_spline 0, 1, 5, <9,9>, <0,0>, <1,0>, <0,1>, <0,0> }",
+       "{prism: {outlines: [[[9, 9], [0, 0], [1, 0], [0, 1], [0, 0]]], curve: quadratic, sweep: conic, from: "
+       "0, "
+       "to: 1}}"},
+      {"prism { cubic_spline 0, 1, 12, <9,9>, <0,0>, <1,0>, <0,1>, <0,0>, <8,8>, <7,7>, <2,2>, <3,2>, <2,3>, "
+       "<2,2>, "
+       "<6,6> }",
+       "{prism: {outlines: [[[9, 9], [0, 0], [1, 0], [0, 1], [0, 0], [8, 8]], [[7, 7], [2, 2], [3, 2], [2, "
+       "3], [2, "
+       "2], [6, 6]]], curve: cubic, from: 0, to: 1}}"},
+      {"prism { bezier_spline 0, 1, 8, <0,0>, <1,1>, <2,1>, <3,0>, <3,0>, <2,-1>, <1,-1>, <0,0> }",
+       "{prism: {outlines: [[[0, 0], [1, 1], [2, 1], [3, 0], [2, -1], [1, -1], [0, 0]]], curve: bezier, "
+       "from: 0, to: "
+       "1}}"},
+      {"sphere_sweep { b_spline 4, 0, 1, x, 0.5, <2,1,0>, 0.5, 3*x, -1 tolerance 0.1 }",
+       "{sphere_sweep: {spheres: [[0, 0, 0, 1], [1, 0, 0, 0.5], [2, 1, 0, 0.5], [3, 0, 0, 1]], curve: "
+       "b_spline}}"},
+      {"sphere_sweep { linear_spline 2, 0, 1, x, 0.5 }",
+       "{sphere_sweep: {spheres: [[0, 0, 0, 1], [1, 0, 0, 0.5]]}}"},
       {"torus { 2, 0.5 }", "{torus: {major: 2, minor: 0.5}, transform: {rotate: [90, 0, 0]}}"},
       {"quadric { <1,2,3>, <4,5,6>, <7,8,9>, -1 }",
        "{quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, -1]}}"},
@@ -253,7 +280,7 @@ TEST(PovScene, ConvertedScenesShowTheSame) {
   const PovFiles files;
   const std::string input = files.dir.write("scene.pov", scene), output = files.dir.file("scene.yaml");
   const PovConversion done = convert_pov(input, output, {});
-  EXPECT_EQ(done.meshes.size(), 2u);
+  EXPECT_EQ(done.meshes.size(), 1u);
   const auto picture = [](const std::string& path) {
     Scene loaded = load_scene(path);
     loaded.film.width = 80, loaded.film.height = 60;

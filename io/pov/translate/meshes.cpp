@@ -275,10 +275,10 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
                                                                                                       : 2;
   const int ax = (drop + 1) % 3, ay = (drop + 2) % 3;
   const double height = dot(normal, loops[0][0]);
-  std::vector<Outline> flat;
+  std::vector<Loop> flat;
   for (const auto& loop : loops) {
     flat.emplace_back();
-    for (const Vec3d& p : loop) flat.back().points.push_back({p[ax], p[ay]});
+    for (const Vec3d& p : loop) flat.back().push_back({p[ax], p[ay]});
   }
   const auto lift = [&](const PlainPoint& p) {
     Vec3d out;
@@ -287,144 +287,13 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
     return out;
   };
   MeshMaker mesh;
-  fill(flat, [&](PlainPoint p, PlainPoint q, PlainPoint r) {
+  fill(std::move(flat), [&](PlainPoint p, PlainPoint q, PlainPoint r) {
     mesh.add({MeshCorner{lift(p)}, MeshCorner{lift(q)}, MeshCorner{lift(r)}});
   });
   return MadeMesh{{{mesh, nullptr}}, false};
 }
 
-// ---- Prisms.
-
-/// Pieces into which a curved span is cut.
-constexpr int kSpanSteps = 16;
-
-PlainPoint mix(const PlainPoint& a, double s, const PlainPoint& b, double t, const PlainPoint& c = {0, 0},
-               double u = 0, const PlainPoint& d = {0, 0}, double v = 0) {
-  return {a.x * s + b.x * t + c.x * u + d.x * v, a.y * s + b.y * t + c.y * u + d.y * v};
-}
-
-/// Adds points of a Bezier curve, without its end.
-void add_bezier(const PlainPoint& a, const PlainPoint& b, const PlainPoint& c, const PlainPoint& d,
-                Outline& out) {
-  for (int i = 0; i < kSpanSteps; ++i) {
-    const double t = static_cast<double>(i) / kSpanSteps, s = 1 - t;
-    out.points.push_back(mix(a, s * s * s, b, 3 * s * s * t, c, 3 * s * t * t, d, t * t * t));
-    out.tangents.push_back(mix(a, -3 * s * s, b, 3 * s * (s - 2 * t), c, 3 * t * (2 * s - t), d, 3 * t * t));
-  }
-}
-
-bool same(const PlainPoint& a, const PlainPoint& b) { return a.x == b.x && a.y == b.y; }
-
-/// The outlines that a list of points makes with a spline.
-std::vector<Outline> outlines_of(const std::vector<PlainPoint>& p, std::string_view spline) {
-  std::vector<Outline> outlines;
-  if (spline == "bezier_spline") {
-    Outline outline;
-    for (std::size_t i = 0; i + 3 < p.size(); i += 4) {
-      if (!outline.points.empty() && !same(p[i], p[i - 1])) outlines.push_back(std::exchange(outline, {}));
-      add_bezier(p[i], p[i + 1], p[i + 2], p[i + 3], outline);
-    }
-    if (!outline.points.empty()) outlines.push_back(std::move(outline));
-    return outlines;
-  }
-  // Points before the first and behind the last one of each loop give only directions.
-  const std::size_t before = spline == "quadratic_spline" || spline == "cubic_spline" ? 1 : 0;
-  const std::size_t behind = spline == "cubic_spline" ? 1 : 0;
-  for (std::size_t begin = 0; begin + before + 1 < p.size();) {
-    const std::size_t first = begin + before;
-    std::size_t last = first + 1;
-    while (last < p.size() && !same(p[last], p[first])) ++last;
-    const bool closed = last < p.size();
-    if (!closed) last = p.size() - behind;
-    Outline outline;
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t next = i + 1 < p.size() ? i + 1 : first;
-      if (spline == "linear_spline" || spline.empty()) {
-        outline.points.push_back(p[i]);
-      } else if (next <= last && next < p.size()) {
-        const PlainPoint &a = p[i - 1], &b = p[i], &c = p[next];
-        if (spline == "cubic_spline") {
-          const PlainPoint& d = next + 1 < p.size() ? p[next + 1] : c;
-          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 1, d, -1.0 / 6, b, 1.0 / 6), c, outline);
-        } else {
-          add_bezier(b, mix(b, 1, c, 1.0 / 6, a, -1.0 / 6), mix(c, 0.5, b, 2.0 / 3, a, -1.0 / 6), c, outline);
-        }
-      }
-    }
-    if (outline.points.size() > 2) outlines.push_back(std::move(outline));
-    begin = last + 1 + behind;
-  }
-  return outlines;
-}
-
-std::optional<MadeMesh> make_prism(Context& context, Arguments& a) {
-  const Place where = a.where();
-  std::string_view spline = "linear_spline";
-  bool conic = false;
-  while (!a.is_numbers()) {
-    const std::string_view word = a.peek_word();
-    if (word.empty()) context.fail(a.where(), "expected the heights of a prism");
-    if (word == "conic_sweep") conic = true;
-    if (word.ends_with("_spline")) spline = word;
-    a.take();
-  }
-  const double low = a.number("a height"), high = a.number("a height");
-  const auto count = static_cast<std::size_t>(std::max(0.0, a.number("a count")));
-  std::vector<PlainPoint> points;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto p = a.pair("a point");
-    points.push_back({p[0], p[1]});
-  }
-  const bool open = has_word(a.block(), "open");
-  std::vector<Outline> outlines = outlines_of(points, spline);
-  if (outlines.empty() || low == high) {
-    context.warn(where, "the prism has no volume; it is left out");
-    return std::nullopt;
-  }
-  const double heights[2] = {std::min(low, high), std::max(low, high)};
-  const auto at = [&](const PlainPoint& p, int end) {
-    const double scale = conic ? heights[end] : 1;
-    return Vec3d{p.x * scale, heights[end], p.y * scale};
-  };
-  MeshMaker mesh;
-  const auto cap = [&](PlainPoint p, PlainPoint q, PlainPoint r) {
-    for (const int end : {0, 1})
-      if (!conic || heights[end] != 0)
-        mesh.add({MeshCorner{at(p, end)}, MeshCorner{at(end == 0 ? q : r, end)},
-                  MeshCorner{at(end == 0 ? r : q, end)}});
-  };
-  // Outlines that cross each other get further points, which the sides have, too.
-  if (!open) fill(outlines, cap);
-  for (const Outline& outline : outlines) {
-    const std::size_t n = outline.points.size();
-    const double turn = area(outline.points) > 0 ? 1 : -1;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t j = (i + 1) % n;
-      const PlainPoint &p = outline.points[i], &q = outline.points[j];
-      std::array<MeshCorner, 4> corner{MeshCorner{at(p, 0)}, MeshCorner{at(q, 0)}, MeshCorner{at(q, 1)},
-                                       MeshCorner{at(p, 1)}};
-      // Smooth along a span, with a crease where two spans meet at an angle.
-      if (!outline.tangents.empty() && !conic) {
-        const auto normal = [&](const PlainPoint& t) { return Vec3d{t.y * turn, 0, -t.x * turn}; };
-        const PlainPoint& t = outline.tangents[i];
-        const PlainPoint& u = outline.tangents[j];
-        const PlainPoint edge{q.x - p.x, q.y - p.y};
-        const auto usable = [&](const PlainPoint& v) {
-          return v.x * edge.x + v.y * edge.y > 0.9 * std::hypot(v.x, v.y) * std::hypot(edge.x, edge.y);
-        };
-        const Vec3d first = normal(usable(t) ? t : edge), second = normal(usable(u) ? u : edge);
-        corner[0].normal = corner[3].normal = first, corner[1].normal = corner[2].normal = second;
-      }
-      const bool is_tip[2] = {conic && heights[0] == 0, conic && heights[1] == 0};
-      if (!is_tip[0]) mesh.add({corner[0], corner[1], is_tip[1] ? corner[3] : corner[2]});
-      if (!is_tip[1]) mesh.add({corner[0], corner[2], corner[3]});
-    }
-  }
-  if (spline != "linear_spline")
-    context.tell("curved prism", where,
-                 fmt::format("curved prisms are meshes with {} flat sides for each span", kSpanSteps));
-  return MadeMesh{{{mesh, nullptr}}, !open};
-}
+// ---- Patches.
 
 MadeMesh make_patch(Context& context, Arguments& a) {
   const Place where = a.where();
@@ -482,7 +351,6 @@ std::optional<MadeMesh> make_mesh(Context& context, Arguments& a) {
   if (kind == "triangle" || kind == "smooth_triangle")
     return make_triangles(context, a.block(), kind == "smooth_triangle", a);
   if (kind == "polygon") return make_polygon(context, a);
-  if (kind == "prism") return make_prism(context, a);
   if (kind == "bicubic_patch") return make_patch(context, a);
   return std::nullopt;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Objects that are meshes here: mesh, mesh2, smooth_triangle, polygon, prism and bicubic_patch. Within
-/// io/ only.
+/// \file Objects that are meshes here: mesh, mesh2, smooth_triangle, polygon and bicubic_patch. Within io/
+/// only.
 
 #include <array>
 #include <memory>

@@ -100,7 +100,7 @@ void fill_plain(std::vector<Loop> loops, const std::function<void(PlainPoint, Pl
 /// strips of trapezoids; loops get points where they pass these lines.
 class EvenOdd {
  public:
-  explicit EvenOdd(std::vector<Outline>& outlines) : outlines_(outlines) {}
+  explicit EvenOdd(std::vector<Loop>& loops) : loops_(loops) {}
 
   /// Adds the points where loops cross. Returns whether there are any.
   bool cross_loops() {
@@ -132,21 +132,21 @@ class EvenOdd {
   };
 
   void note_levels() {
-    for (const Outline& outline : outlines_)
-      for (const PlainPoint& p : outline.points) levels_[p.y].insert(p.x);
+    for (const Loop& loop : loops_)
+      for (const PlainPoint& p : loop) levels_[p.y].insert(p.x);
   }
 
   std::vector<Edge> edges() const {
     std::vector<Edge> all;
-    for (std::size_t l = 0; l < outlines_.size(); ++l) {
-      const Loop& p = outlines_[l].points;
+    for (std::size_t l = 0; l < loops_.size(); ++l) {
+      const Loop& p = loops_[l];
       for (std::size_t i = 0; i < p.size(); ++i) all.push_back({l, i, p[i], p[(i + 1) % p.size()]});
     }
     return all;
   }
 
   Stops crossings() const {
-    Stops stops(outlines_.size());
+    Stops stops(loops_.size());
     const std::vector<Edge> all = edges();
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j) {
@@ -163,7 +163,7 @@ class EvenOdd {
 
   /// Where edges pass the lines through points.
   Stops passes() const {
-    Stops stops(outlines_.size());
+    Stops stops(loops_.size());
     for (const Edge& e : edges()) {
       if (e.a.y == e.b.y) continue;
       const auto end = levels_.lower_bound(std::max(e.a.y, e.b.y));
@@ -176,22 +176,15 @@ class EvenOdd {
   }
 
   void insert(Stops stops) {
-    for (std::size_t l = 0; l < outlines_.size(); ++l) {
+    for (std::size_t l = 0; l < loops_.size(); ++l) {
       std::ranges::stable_sort(stops[l], {}, [](const Stop& s) { return std::pair(s.edge, s.at); });
-      Outline out;
+      Loop out;
       auto stop = stops[l].begin();
-      const Outline& in = outlines_[l];
-      for (std::size_t i = 0; i < in.points.size(); ++i) {
-        out.points.push_back(in.points[i]);
-        if (!in.tangents.empty()) out.tangents.push_back(in.tangents[i]);
-        for (; stop != stops[l].end() && stop->edge == i; ++stop) {
-          out.points.push_back(stop->point);
-          if (in.tangents.empty()) continue;
-          const PlainPoint &t = in.tangents[i], &u = in.tangents[(i + 1) % in.tangents.size()];
-          out.tangents.push_back({t.x + (u.x - t.x) * stop->at, t.y + (u.y - t.y) * stop->at});
-        }
+      for (std::size_t i = 0; i < loops_[l].size(); ++i) {
+        out.push_back(loops_[l][i]);
+        for (; stop != stops[l].end() && stop->edge == i; ++stop) out.push_back(stop->point);
       }
-      outlines_[l] = std::move(out);
+      loops_[l] = std::move(out);
     }
   }
 
@@ -225,18 +218,15 @@ class EvenOdd {
     return out;
   }
 
-  std::vector<Outline>& outlines_;
+  std::vector<Loop>& loops_;
   std::map<double, std::set<double>> levels_;
 };
 
 }  // namespace
 
-void fill(std::vector<Outline>& outlines,
-          const std::function<void(PlainPoint, PlainPoint, PlainPoint)>& add) {
-  EvenOdd even_odd(outlines);
+void fill(std::vector<Loop> loops, const std::function<void(PlainPoint, PlainPoint, PlainPoint)>& add) {
+  EvenOdd even_odd(loops);
   if (even_odd.cross_loops()) return even_odd.fill(add);
-  std::vector<Loop> loops;
-  for (const Outline& outline : outlines) loops.push_back(outline.points);
   fill_plain(std::move(loops), add);
 }
 

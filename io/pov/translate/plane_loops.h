@@ -1,6 +1,5 @@
 #pragma once
-/// \file Areas of the plane between loops, such as letters and the ends of prisms, as triangles. Within io/
-/// only.
+/// \file Areas of the plane between loops, as triangles. Within io/ only.
 
 #include <functional>
 #include <vector>
@@ -12,17 +11,11 @@ struct PlainPoint {
 };
 using Loop = std::vector<PlainPoint>;
 
-/// A loop, and if it is smooth the directions in which it goes on at its points.
-struct Outline {
-  Loop points;
-  std::vector<PlainPoint> tangents;
-};
-
 /// Greater than 0 if the loop turns to the left.
 double area(const Loop& loop);
 
 /// Calls add(a, b, c) for triangles, turned to the left, that cover what lies inside of an odd number of
-/// loops. Triangles meet edge to edge. Loops that cross each other get further points.
-void fill(std::vector<Outline>& outlines, const std::function<void(PlainPoint, PlainPoint, PlainPoint)>& add);
+/// loops. Triangles meet edge to edge.
+void fill(std::vector<Loop> loops, const std::function<void(PlainPoint, PlainPoint, PlainPoint)>& add);
 
 }  // namespace oktett::pov

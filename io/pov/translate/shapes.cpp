@@ -10,6 +10,7 @@
 #include "io/image/heights.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/meshes.h"
+#include "io/pov/translate/sweeps.h"
 #include "kernels/exact/lathe.h"
 #include "kernels/exact/revolution.h"
 #include "kernels/heights/height_grid.h"
@@ -50,9 +51,10 @@ class ShapeMaker {
     if (k == "isosurface") return isosurface();
     if (k == "julia_fractal") return julia();
     if (k == "height_field") return height_field();
+    if (k == "prism" || k == "text" || k == "sphere_sweep") return make_sweep(context_, a_);
     if (std::optional<MadeMesh> made = make_mesh(context_, a_)) return mesh(std::move(*made));
-    constexpr std::array<std::string_view, 6> kMeshes{"mesh",    "mesh2", "triangle",
-                                                      "polygon", "prism", "bicubic_patch"};
+    constexpr std::array<std::string_view, 5> kMeshes{"mesh", "mesh2", "triangle", "polygon",
+                                                      "bicubic_patch"};
     if (std::ranges::find(kMeshes, k) == kMeshes.end())
       context_.tell(std::string(k), where_,
                     fmt::format("'{}' is not read here; such objects are left out", k));
@@ -138,29 +140,10 @@ class ShapeMaker {
     const Vec3d center = a_.vector("the centre"), normal = a_.vector("the normal");
     const double radius = std::abs(a_.number("the radius"));
     const double hole = a_.is_numbers() ? std::abs(a_.number("the radius of the hole")) : 0;
-    if (hole > 0 && hole < radius && length(normal) > 0)
-      return ring(center, normal / length(normal), radius, hole);
     tree_.put(keys, "center", vector(center)), tree_.put(keys, "normal", vector(normal));
     tree_.put(keys, "radius", number(radius));
+    if (hole > 0) tree_.put(keys, "inner_radius", number(hole));
     return one("disk", keys, false);
-  }
-
-  /// A disc with a hole, as a mesh of many sides.
-  Shapes ring(const Vec3d& center, const Vec3d& normal, double radius, double hole) {
-    constexpr int kSides = 256;
-    Vec3d u, v;
-    make_basis(normal, u, v);
-    const auto at = [&](int i, double r) {
-      const double angle = 2 * 3.14159265358979323846 * (i % kSides) / kSides;
-      return MeshCorner{center + u * (r * std::cos(angle)) + v * (r * std::sin(angle))};
-    };
-    MeshMaker made;
-    for (int i = 0; i < kSides; ++i) {
-      made.add({at(i, hole), at(i, radius), at(i + 1, radius)});
-      made.add({at(i, hole), at(i + 1, radius), at(i + 1, hole)});
-    }
-    context_.tell("disc", where_, fmt::format("discs with a hole are meshes of {} sides", kSides));
-    return mesh({{{made, nullptr}}, false});
   }
 
   /// What lies about the z axis in scene files and about the y axis here.
