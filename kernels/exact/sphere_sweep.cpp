@@ -156,8 +156,10 @@ class SweptRay {
     add_product(x, n, x, n, -1, chord), add_product(y, n, y, n, -1, chord);
     SignChanges ends;
     find_sign_changes(chord, 2 * n, roots::Method::automatic, kMaxRayDegree, ends);
-    const double first = polynomial_at(chord, 2 * n, -1);
-    bool positive = ends.count > 0 ? ends.turn[0] < 0 : first > 0;
+    // Without a change of sign it may yet be zero somewhere.
+    bool positive = ends.count > 0 && ends.turn[0] < 0;
+    if (ends.count == 0)
+      for (const double v : {-1.0, 0.0, 1.0}) positive |= polynomial_at(chord, 2 * n, v) > 0;
     if (ends.count == 0 && !positive) return;
     // Where one of the ends may turn.
     double db[3] = {}, dchord[6] = {}, square[5] = {}, turning[kMaxRayDegree + 1] = {};
