@@ -57,8 +57,10 @@ struct Element {
   Value value;
 };
 
-/// `keyword { ... }`; of an entry of a map the keyword is "[". A declared name, such as that of a texture,
-/// stands for the block that it was declared as: one shared block wherever it is used, with `name`.
+/// `keyword { ... }`; of an entry of a map the keyword is "[", of a vector of more than five numbers, such as
+/// that of `matrix` or `quartic`, it is "<". Textures that were declared in a row are one `texture` that
+/// holds them as layers. A declared name, such as that of a texture, stands for the block that it was
+/// declared as: one shared block wherever it is used, with `name`.
 struct Block {
   std::string_view keyword;
   Place where;
@@ -79,7 +81,7 @@ struct FunctionNode {
     user,      ///< another function, `function`
     spline,    ///< `spline`, of one operand; of its vector the component `index`
     pattern,   ///< `function { pattern { ... } }` or a pigment's: `block`, of three operands; component
-              ///< `index` of a colour, 0 of a pattern
+               ///< `index` of a colour, 0 of a pattern
     transform,  ///< `function { transform { ... } }`: `block`, of three operands; component `index`
   };
   Op op = Op::constant;
