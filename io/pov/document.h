@@ -76,7 +76,8 @@ struct FunctionNode {
     constant,   ///< `number`
     parameter,  ///< number `index`
     call,      ///< `name`: an operator ("+", "-", "*", "/", "neg", "!", "<", "<=", "=", "!=", ">=", ">", "&",
-               ///< "|"), a built-in function ("sin", ...), or "if" for select-like operators
+               ///< "|"), a built-in function ("sin", "select", ...), or "sum" or "prod" of `function`, whose
+               ///< parameters are a counter and those of this function: operands first, last, and these
     internal,  ///< `function { internal(N) }` with number `index`, as functions.inc declares f_... functions
     user,      ///< another function, `function`
     spline,    ///< `spline`, of one operand; of its vector the component `index`
