@@ -101,6 +101,9 @@ struct Function {
   std::string name;  ///< by which it was declared; empty: it has none
   std::vector<std::string> parameters;
   std::vector<FunctionNode> nodes;
+  /// 1; of `function { transform ... }`, `{ spline ... }` and `{ pigment ... }` how many numbers a call
+  /// returns.
+  std::uint8_t components = 1;
 };
 
 struct Spline {
