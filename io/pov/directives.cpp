@@ -300,7 +300,9 @@ bool Interpreter::is_defined() {
   if (name.kind != Token::Kind::word) fail_expected("a name", name);
   bool result = name.name->datum() != nullptr && !name.name->datum()->empty();
   if (next_is('[')) {
-    const Datum* const datum = name.name->bindings.empty() ? nullptr : access(name).find();
+    // The index may undefine the name, so its value is kept alive.
+    const Reference reference = name.name->bindings.empty() ? Reference{} : access(name);
+    const Datum* const datum = reference.find();
     result = datum != nullptr && !datum->empty();
   } else if (result) {
     const auto* const file = name.name->datum()->get<std::shared_ptr<TextFile>>();
