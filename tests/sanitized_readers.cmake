@@ -1,5 +1,6 @@
-# Compiles the readers of mesh files and of POV-Ray's language a second time, with the address and undefined-behaviour sanitizers, and runs their tests and
-# fuzz targets again. This takes 3 minutes on two cores; the whole library, which scripts/test --asan compiles, takes 15.
+# Compiles the readers of mesh files and of POV-Ray's language a second time, with the address and undefined-behaviour
+# sanitizers, and runs their tests and fuzz targets again. This takes 3 minutes on two cores; the whole library, which
+# scripts/test --asan compiles, takes 15.
 set(sanitizers -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all)
 
 file(GLOB sources CONFIGURE_DEPENDS
