@@ -5,6 +5,7 @@
 
 #include "accel/hit_place.h"
 #include "accel/instance.h"
+#include "core/rounding.h"
 #include "kernels/closed/closest_triangle.h"
 #include "kernels/exact_ops.h"
 
@@ -113,7 +114,7 @@ void set_triangle(const HitPlace& place, const HitNames& names, const Vec3d& p, 
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3f& corner = mesh.positions[mesh.indices[3 * std::size_t{names.primitive} + k]];
     // Triangles are traced with their corners rounded to float where the geometry puts them.
-    v[k] = Vec3d(frame.identity ? corner : Vec3f(g.transform.point(Vec3d(corner))));
+    v[k] = frame.identity ? Vec3d(corner) : rounded_to_floats(g.transform.point(Vec3d(corner)));
     if (place.moved) v[k] = place.to_world.point(v[k]);
   }
   const auto nearest =

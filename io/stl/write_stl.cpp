@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/rounding.h"
 #include "io/mesh/vertices.h"
 
 namespace oktett {
@@ -59,7 +60,7 @@ MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii) 
   MeshLosses losses;
   if (!ascii && std::ranges::any_of(file.mesh.positions, [&](const Vec3f& p) {
         const Vec3d there = file.mesh.origin + Vec3d(p);
-        return !(Vec3d(Vec3f(there)) == there);
+        return !(rounded_to_floats(there) == there);
       }))
     losses.push_back(kLostDigits);
   if (!file.mesh.uv_indices.empty()) losses.push_back("lost: texture coordinates");

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/far_mesh.h"
+#include "core/rounding.h"
 #include "render/append_materials.h"
 #include "render/look/default_look.h"
 #include "render/material.h"
@@ -315,7 +316,7 @@ std::shared_ptr<const TriangleMesh> SceneStore::replaced(const AddedMesh& added,
   for (std::size_t i = 0; i < size; ++i) all.push_back(position(i));
   // Those that stay may have digits that floats lack.
   const bool are_floats = change.are_floats && std::ranges::all_of(all, [](const Vec3d& p) {
-                            return Vec3d(Vec3f(p)) == p || !is_finite(p);
+                            return rounded_to_floats(p) == p || !is_finite(p);
                           });
   if (are_floats) {
     changed->origin = {};
