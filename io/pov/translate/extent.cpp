@@ -22,8 +22,20 @@ Extent Extent::join(const Extent& o) const {
   return out;
 }
 
+Extent Extent::moved_along_axes(const Affine& map) const {
+  Extent out;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l)
+      if (k != l && map.m[k][l] != 0) return {};
+  for (int k = 0; k < 3; ++k) {
+    const double a = lo[k] * map.m[k][k] + map.m[k][3], b = hi[k] * map.m[k][k] + map.m[k][3];
+    out.lo[k] = std::min(a, b), out.hi[k] = std::max(a, b);
+  }
+  return out;
+}
+
 Extent Extent::moved(const Affine& map) const {
-  if (!is_finite()) return {};
+  if (!is_finite()) return moved_along_axes(map);
   Extent out{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3d p = map.point({corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z});
@@ -85,13 +97,39 @@ Extent shape_extent(Context& context, Arguments& a) {
     a.pair("two exponents");
     return {{-1, -1, -1}, {1, 1, 1}};
   }
+  if (kind == "plane") {
+    const Vec3d n = a.vector("the normal");
+    const double d = a.number("the distance");
+    Extent all;
+    for (int k = 0; k < 3; ++k) {
+      const bool along = n[k] != 0 && n[(k + 1) % 3] == 0 && n[(k + 2) % 3] == 0;
+      if (along && n[k] > 0) all.hi[k] = d;
+      if (along && n[k] < 0) all.lo[k] = -d;
+    }
+    return all;
+  }
+  if (kind == "quadric") {
+    // Ellipsoids and round columns about the origin.
+    const Vec3d squares = a.vector("coefficients"), mixed = a.vector("coefficients"),
+                linear = a.vector("coefficients");
+    const double rest = a.number("a coefficient");
+    Extent all;
+    const bool plain = mixed == Vec3d{0, 0, 0} && linear == Vec3d{0, 0, 0} && rest < 0;
+    for (int k = 0; k < 3 && plain && std::min({squares.x, squares.y, squares.z}) >= 0; ++k) {
+      if (squares[k] == 0) continue;
+      all.hi[k] = std::sqrt(-rest / squares[k]), all.lo[k] = -all.hi[k];
+    }
+    return all;
+  }
   if (kind == "height_field") return {{0, 0, 0}, {1, 1, 1}};
   if (kind == "union" || kind == "merge" || kind == "object" || kind == "intersection" ||
       kind == "difference" || kind == "clipped_by" || kind == "bounded_by") {
-    Extent all = kind == "intersection" ? Extent{} : nothing;
+    // What cuts or bounds is what several objects have in common.
+    const bool meets = kind == "intersection" || kind == "clipped_by" || kind == "bounded_by";
+    Extent all = meets ? Extent{} : nothing;
     for (bool first = true; const Block* const inner = a.peek_block(); first = false) {
       if (!is_object(inner->keyword)) break;
-      if (kind == "intersection")
+      if (meets)
         all = all.meet(extent_of(context, *inner));
       else if (first || kind != "difference")
         all = all.join(extent_of(context, *inner));
@@ -131,7 +169,7 @@ Extent limits_of(Context& context, const Block& block) {
     a.take();
     if (inner == nullptr || (inner->keyword != "clipped_by" && inner->keyword != "bounded_by")) continue;
     const Extent e = extent_of(context, *inner);
-    if (moves.all.is_invertible() && e.is_finite()) limits = limits.meet(e.moved(moves.all.inverse()));
+    if (moves.all.is_invertible()) limits = limits.meet(e.moved(moves.all.inverse()));
   }
   return limits;
 }

@@ -17,6 +17,9 @@ struct Extent {
   Extent join(const Extent& other) const;
   /// The box around its image; endless if it is.
   Extent moved(const Affine& map) const;
+
+ private:
+  Extent moved_along_axes(const Affine& map) const;
 };
 
 /// The box around an object, in the space that it stands in.

@@ -255,8 +255,7 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   Arguments scan(context_, block);
   while (!scan.at_end())
     if (!take_moves(context_, scan, moves)) scan.take();
-  if (outer.within.is_finite() && moves.all.is_invertible())
-    within = within.meet(outer.within.moved(moves.all.inverse()));
+  if (moves.all.is_invertible()) within = within.meet(outer.within.moved(moves.all.inverse()));
   const bool is_clipped = std::ranges::any_of(block.elements, [](const Element& e) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     return inner != nullptr && *inner != nullptr && (*inner)->keyword == "clipped_by";
@@ -323,7 +322,7 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
   inner.operand =
       outer.operand || !m.clips.empty() || k == "intersection" || k == "difference" || k == "merge";
   inner.within = limits_of(context_, block);
-  if (outer.within.is_finite() && m.moves.all.is_invertible())
+  if (m.moves.all.is_invertible())
     inner.within = inner.within.meet(outer.within.moved(m.moves.all.inverse()));
   if (k == "intersection")
     for (const auto& child : children) inner.within = inner.within.meet(extent_of(context_, *child));
@@ -393,7 +392,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
     hidden_ = false;
     std::erase_if(parts, [](const Built& b) { return !b.node; });
     if (parts.empty()) continue;
-    Built cutter = parts.size() == 1 ? parts[0] : combine(clip.block->where, "union", parts);
+    Built cutter = parts.size() == 1 ? parts[0] : combine(clip.block->where, "intersection", parts);
     built = combine(where, "intersection", {built, cutter});
   }
   if (!moved) move(moves_until(m.moves.list.size()));
