@@ -47,14 +47,6 @@ double screw(double arms, const Vec3d& p, const PatternTurbulence& t) {
 
 }  // namespace
 
-bool FunctionPattern::operator==(const FunctionPattern& other) const {
-  const auto same = [](const TapeStep& s, const TapeStep& t) {
-    return s.op == t.op && s.out == t.out && s.a == t.a && s.b == t.b && s.n == t.n && s.c == t.c;
-  };
-  return function.result == other.function.result &&
-         std::ranges::equal(function.steps, other.function.steps, same);
-}
-
 double raw_value(const AngularPattern&, const Vec3d& p, const PatternFrame&) {
   if (p.x == 0 && p.z == 0) return 0.25;
   return 0.75 + portable::atan2(p.x, p.z) / kTurn;
