@@ -81,7 +81,8 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
               {std::begin(kViewpoints), std::end(kViewpoints)});
   verb.choice("--isa", a.isa, "NAME", "Instruction set", {"auto", "sse4.2", "avx2", "avx512", "scalar"});
   add_bvh_option(verb, a.bvh);
-  verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file, or declare k in a .pov; may be repeated");
+  verb.option("-D", &a.definitions, "k=v",
+              "Define ${k} of the scene file, or declare k in a .pov; may be repeated");
   add_gltf_options(verb, a.gltf, true);
   add_stroke_option(verb, a.gltf);
   add_limit_options(verb, a.limits);
