@@ -1,12 +1,13 @@
-# Compiles the readers of mesh files a second time, with the address and undefined-behaviour sanitizers, and runs their tests and
-# fuzz targets again. This takes 3 minutes on two cores; the whole library, which scripts/test --asan compiles, takes 15.
+# Compiles the readers of mesh files and of POV-Ray's language a second time, with the address and undefined-behaviour
+# sanitizers, and runs their tests and fuzz targets again. This takes 3 minutes on two cores; the whole library, which
+# scripts/test --asan compiles, takes 15.
 set(sanitizers -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all)
 
 file(GLOB sources CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.cpp ${PROJECT_SOURCE_DIR}/io/text/*.cpp ${PROJECT_SOURCE_DIR}/io/mesh/*.cpp
   ${PROJECT_SOURCE_DIR}/io/mesh/load/*.cpp ${PROJECT_SOURCE_DIR}/io/obj/*.cpp ${PROJECT_SOURCE_DIR}/io/ply/*.cpp
   ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/off/*.cpp ${PROJECT_SOURCE_DIR}/io/threemf/*.cpp
-  ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
+  ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp ${PROJECT_SOURCE_DIR}/io/pov/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/(write|glb)_[a-z_]*\\.cpp$")
 add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp ${PROJECT_SOURCE_DIR}/io/image/color.cpp
   support/temp_dir.cpp fuzz/no_images.cpp)
@@ -21,8 +22,8 @@ oktett_unity(sanitized_readers)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/tiny.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 add_executable(test_readers)
-foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj_material obj_parallel ply ply_error similar_file
-    stl text_number)
+foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj_material obj_parallel ply ply_error
+    pov_language similar_file stl text_number)
   target_sources(test_readers PRIVATE io/${name}_test.cpp)
 endforeach()
 target_sources(test_readers PRIVATE core/bytes_test.cpp core/pages_test.cpp core/soa_test.cpp core/virtual_array_test.cpp)
@@ -41,7 +42,7 @@ endforeach()
 
 add_library(sanitized_replay OBJECT fuzz/replay.cpp)
 target_link_libraries(sanitized_replay PRIVATE sanitized_readers)
-foreach(name gltf gzip mtl number obj off ply stl)
+foreach(name gltf gzip mtl number obj off ply pov stl)
   add_executable(sanitized_${name}_fuzz fuzz/${name}_fuzz.cpp)
   target_link_libraries(sanitized_${name}_fuzz PRIVATE sanitized_readers sanitized_replay)
   add_dependencies(oktett_tests sanitized_${name}_fuzz)

@@ -8,7 +8,7 @@
 namespace oktett::pov {
 
 void Interpreter::add(std::vector<Element>& elements, const Place& where, Value value) {
-  if (++values_ > limits_.values) fail(where, "more than " + std::to_string(limits_.values) + " values");
+  count_values(where, 1);
   elements.push_back({where, std::move(value)});
 }
 
@@ -60,7 +60,8 @@ bool Interpreter::take_plain_numbers(std::vector<Element>& elements) {
       // Lists of meshes say how long they are. No element takes fewer than two characters.
       constexpr double least = 64;
       if (elements.size() == 1 && value.size == 1 && value.v[0] >= least &&
-          value.v[0] < static_cast<double>(end - at.p) / 2)
+          value.v[0] < static_cast<double>(end - at.p) / 2 &&
+          value.v[0] < static_cast<double>(limits_.values - values_))
         elements.reserve(static_cast<std::size_t>(value.v[0]) + 1);
     }
   } catch (const LexError& error) {
@@ -88,6 +89,7 @@ void Interpreter::parse_elements(std::vector<Element>& elements, const Token& op
 /// A block whose opening brace was read.
 std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint32_t& depth) {
   const Level level(*this, keyword.where);
+  count_values(keyword.where, 3);  // it takes as much memory
   auto block = std::make_shared<Block>();
   block->keyword = keyword.kind == Token::Kind::word ? kKeywords[keyword.name->keyword] : "[";
   block->where = keyword.where;
@@ -252,7 +254,9 @@ Datum Interpreter::parse_value() {
   if (token.kind == Token::Kind::word && keyword == kNoKeyword) {
     take();
     const Reference reference = access(token);
-    const Datum kept = value_of(reference, token);
+    const Datum& found = value_of(reference, token);
+    if (const std::string* text = found.get<std::string>()) check_length(text->size(), token.where);
+    const Datum kept = found;
     return value_behind(kept, token);
   }
   if (is_color_keyword(keyword)) {
@@ -301,6 +305,7 @@ Datum Interpreter::parse_spline(const Token& keyword) {
       const Reference reference = access(token);
       const Datum datum = value_of(reference, token);
       if (const SplinePtr* other = datum.get<SplinePtr>()) {
+        count_values(token.where, (*other)->points.size());
         *spline = **other;
         continue;
       }
@@ -312,8 +317,7 @@ Datum Interpreter::parse_spline(const Token& keyword) {
     point.value = value.v;
     if (value.size == 1) point.value[1] = value.v[0];
     spline->size = std::max(spline->size, static_cast<int>(value.size));
-    if (++values_ > limits_.values)
-      fail(token.where, "more than " + std::to_string(limits_.values) + " values");
+    count_values(token.where, 1);
     spline->points.push_back(point);
   }
   hold_ = outer;
@@ -344,7 +348,7 @@ Datum Interpreter::parse_array(const Token& keyword) {
     const double size = parse_float();
     if (!(size >= 1)) fail(where, "expected a size of at least 1");
     count *= std::floor(size);
-    if (!(count + static_cast<double>(*living_elements_) <= static_cast<double>(limits_.array_elements)))
+    if (!(count + static_cast<double>(array_count_->living) <= static_cast<double>(limits_.array_elements)))
       fail(where, "arrays have more than " + std::to_string(limits_.array_elements) + " elements");
     sizes.push_back(static_cast<std::size_t>(size));
     expect(']', "behind the size of an array");
@@ -354,18 +358,19 @@ Datum Interpreter::parse_array(const Token& keyword) {
   std::shared_ptr<Array> array;
   if (sizes.empty()) {
     expect('{', "behind array");
-    array = std::make_shared<Array>(sizes, 0, living_elements_);
+    array = std::make_shared<Array>(sizes, 0, array_count_);
     while (!take_if('}')) {
       Datum element = parse_value();
       datum.depth = std::max(datum.depth, deeper(element.depth, keyword.where));
-      array->elements.push_back(std::move(element));
-      if (++*living_elements_ > limits_.array_elements)
+      array->append(std::move(element));
+      if (array_count_->living > limits_.array_elements)
         fail(keyword.where, "arrays have more than " + std::to_string(limits_.array_elements) + " elements");
       skip_comma();
     }
     array->sizes = {array->elements.size()};
   } else {
-    array = std::make_shared<Array>(sizes, static_cast<std::size_t>(count), living_elements_);
+    array = std::make_shared<Array>(sizes, static_cast<std::size_t>(count), array_count_);
+    count_step(keyword.where, array->elements.size() / 4);
     std::size_t next = 0;
     if (next_is('{')) fill_array(*array, 0, next, datum.depth);
   }

@@ -43,7 +43,7 @@ bool divides_block(Keyword keyword) {
 
 }  // namespace
 
-bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
+bool Interpreter::follow_directive(const Token& hash) {
   const Level level(*this, hash.where);
   const Token word = take_written();
   const Keyword keyword = word.keyword();
@@ -132,40 +132,47 @@ bool Interpreter::follow_directive(const Token& hash, const Cursor& start) {
           "fclose", "fopen", "for",    "if",      "ifdef",   "ifndef",  "include", "local", "macro",
           "range",  "read",  "switch", "undef",   "version", "warning", "while",   "write"};
       std::string message = "expected a directive behind '#', found " + describe(word);
-      if (word.kind == Token::Kind::word) message += did_you_mean(word.name->text, known);
+      if (word.kind == Token::Kind::word) message += similar(word.name->text, known);
       fail(word.where, message);
     }
   }
-  (void)start;
   return true;
 }
 
 // ---- Declarations
 
-bool store(const Reference& reference, Datum value) {
+bool Interpreter::assign(const Reference& reference, Datum value, const Place& where) {
+  std::uint32_t depth = value.depth;
+  for (std::size_t i = 0; i < reference.path.size(); ++i) depth = deeper(depth, where);
   Datum* const target = reference.find_to_write();
   if (target == nullptr) return false;
-  const std::uint32_t depth = value.depth + static_cast<std::uint32_t>(reference.path.size());
   Datum* level = reference.slot.get();
   for (std::size_t i = 0; i < reference.path.size(); ++i) {
     level->depth = std::max(level->depth, depth - static_cast<std::uint32_t>(i));
     level = &std::get<std::shared_ptr<Array>>(level->value)->elements[reference.path[i]];
   }
   *target = std::move(value);
+  if (array_count_->copied == 0) return true;
+  const std::size_t copied = array_count_->copied;
+  array_count_->copied = 0;
+  count_step(where, copied / 4);
+  if (array_count_->living > limits_.array_elements)
+    fail(where, "arrays have more than " + std::to_string(limits_.array_elements) + " elements");
   return true;
 }
 
-/// Gives a block its name, a function too.
-static Datum named(Datum datum, const std::string& name) {
+Datum Interpreter::named(Datum datum, const Token& name) {
   if (const BlockPtr* block = datum.get<BlockPtr>()) {
     if ((*block)->name.empty()) {
+      count_values(name.where, (*block)->elements.size());
       auto copy = std::make_shared<Block>(**block);
-      copy->name = name;
+      copy->name = name.name->text;
       datum.value = BlockPtr(std::move(copy));
     }
   } else if (const FunctionPtr* function = datum.get<FunctionPtr>(); function && (*function)->name.empty()) {
+    count_values(name.where, (*function)->nodes.size());
     auto copy = std::make_shared<Function>(**function);
-    copy->name = name;
+    copy->name = name.name->text;
     datum.value = FunctionPtr(std::move(copy));
   }
   return datum;
@@ -196,7 +203,7 @@ void Interpreter::declare(bool local) {
   expect('=', "behind the name that is declared");
   const Hold outer = hold_;
   hold_ = {frames_.size(), open_.size(), false};
-  Datum value = named(parse_value(), name.name->text);
+  Datum value = named(parse_value(), name);
   // Textures in a row are the layers of one.
   if (const BlockPtr* first = value.get<BlockPtr>();
       first && (*first)->keyword == "texture" && !next_is(';')) {
@@ -220,7 +227,7 @@ void Interpreter::declare(bool local) {
   hold_ = outer;
   if (!pending_.empty() && pending_.back().kind == Token::Kind::held) pending_.pop_back();
   if (next_is(';')) take();
-  if (!store(element ? *element : variable(name, local), std::move(value)))
+  if (!assign(element ? *element : variable(name, local), std::move(value), name.where))
     fail(name.where, "the array " + in_quotes(name.name->text) + " has changed in between");
 }
 
@@ -228,7 +235,7 @@ void Interpreter::undef() {
   const Token name = take_written();
   if (name.kind != Token::Kind::word) fail_expected("a name", name);
   if (next_is('[')) {
-    store(access(name), {});
+    assign(access(name), {}, name.where);
   } else if (!name.name->bindings.empty()) {
     name.name->bindings.pop_back();
   }
@@ -256,19 +263,32 @@ void Interpreter::define_macro(const Place& where) {
   }
   macro->body = at_;
   skip_block(where, false, false);
+  macro->length = static_cast<std::size_t>(at_.p - macro->body.p);
   Datum datum;
   datum.value = std::shared_ptr<const Macro>(std::move(macro));
   // Macros are global, whoever defines them; a second definition replaces the first.
-  store(variable(name, false), std::move(datum));
+  assign(variable(name, false), std::move(datum), name.where);
 }
 
 // ---- Choices and loops
 
+void Interpreter::check_floor(const Place& where) const {
+  if (frames_.size() == floor_.first && open_.size() <= floor_.second)
+    fail(where, "what ends here began before the condition that this stands in");
+}
+
+void Interpreter::check_enclosed(const Place& where) const {
+  if (frames_.size() != floor_.first || open_.size() != floor_.second)
+    fail(where, "the condition of this directive does not end where it began");
+}
+
 bool Interpreter::condition() {
+  const Enclosed enclosed(*this);
   expect('(', "before a condition");
   const Place where = peek().where;
   const bool result = to_float(parse_relation(), where) != 0;
   expect(')', "behind a condition");
+  check_enclosed(where);
   return result;
 }
 
@@ -280,11 +300,14 @@ bool Interpreter::is_defined() {
   if (name.kind != Token::Kind::word) fail_expected("a name", name);
   bool result = name.name->datum() != nullptr && !name.name->datum()->empty();
   if (next_is('[')) {
-    const Datum* const datum = name.name->bindings.empty() ? nullptr : access(name).find();
+    // The index may undefine the name, so its value is kept alive.
+    const Reference reference = name.name->bindings.empty() ? Reference{} : access(name);
+    const Datum* const datum = reference.find();
     result = datum != nullptr && !datum->empty();
+  } else if (result) {
+    const auto* const file = name.name->datum()->get<std::shared_ptr<TextFile>>();
+    if (file != nullptr) result = !(*file)->at_end();
   }
-  if (result && name.name->datum()->get<std::shared_ptr<TextFile>>())
-    result = !(*name.name->datum()->get<std::shared_ptr<TextFile>>())->at_end();
   expect(')', "behind a name");
   return result;
 }
@@ -313,7 +336,6 @@ Interpreter::Stop Interpreter::skip_block(const Place& opened, bool else_stops, 
       take_written();
       continue;
     }
-    const Cursor start = at_;
     ++at_.p;
     try {
       skip_space(at_);
@@ -333,7 +355,6 @@ Interpreter::Stop Interpreter::skip_block(const Place& opened, bool else_stops, 
       if (case_stops && keyword == "case"_kw) return Stop::at_case;
       if (case_stops && keyword == "range"_kw) return Stop::at_range;
     }
-    (void)start;
   }
 }
 
@@ -350,6 +371,7 @@ void Interpreter::begin_if(const Place& where, Keyword kind) {
 
 /// The end of a branch that was followed.
 void Interpreter::reach_else(const Place& where) {
+  check_floor(where);
   if (open_.size() == frames_.back().open) fail(where, "there is no #if that this belongs to");
   const Open::Kind kind = open_.back().kind;
   if (kind != Open::Kind::chosen && kind != Open::Kind::switched)
@@ -362,17 +384,24 @@ void Interpreter::reach_else(const Place& where) {
 void Interpreter::reach_case(const Place& where) {
   if (open_.size() == frames_.back().open || open_.back().kind != Open::Kind::switched)
     fail(where, "there is no #switch that this belongs to");
+  const Enclosed enclosed(*this);
   expect('(', "behind #case or #range");
   parse_float();
   skip_comma();
   if (!next_is(')')) parse_float();
   expect(')', "behind #case or #range");
+  check_enclosed(where);
 }
 
 void Interpreter::begin_switch(const Place& where) {
-  expect('(', "behind #switch");
-  const double value = parse_float();
-  expect(')', "behind the value of #switch");
+  double value = 0;
+  {
+    const Enclosed enclosed(*this);
+    expect('(', "behind #switch");
+    value = parse_float();
+    expect(')', "behind the value of #switch");
+    check_enclosed(where);
+  }
   open_.push_back({.kind = Open::Kind::switched, .where = where, .value = value});
   select_case(where);
 }
@@ -387,6 +416,7 @@ void Interpreter::select_case(const Place& where) {
     }
     if (stop == Stop::at_else) return;
     if (stop == Stop::at_elseif) continue;
+    const Enclosed enclosed(*this);
     expect('(', "behind #case or #range");
     const double first = parse_float();
     bool fits = std::abs(value - first) < kTolerance;
@@ -395,6 +425,7 @@ void Interpreter::select_case(const Place& where) {
       fits = value >= first - kTolerance && value <= parse_float() + kTolerance;
     }
     expect(')', "behind #case or #range");
+    check_enclosed(where);
     if (fits) return;
   }
 }
@@ -409,6 +440,7 @@ void Interpreter::begin_while(const Place& where) {
 }
 
 void Interpreter::begin_for(const Place& where) {
+  std::optional<Enclosed> enclosed(std::in_place, *this);
   expect('(', "behind #for");
   const Token name = take_written();
   if (name.kind != Token::Kind::word || name.name->keyword != kNoKeyword)
@@ -422,11 +454,13 @@ void Interpreter::begin_for(const Place& where) {
   const double step = next_is(')') ? 1 : parse_float();
   if (step == 0) fail(at_step, "the step of #for must not be 0");
   expect(')', "behind #for");
+  check_enclosed(where);
+  enclosed.reset();
   Open loop{.kind = Open::Kind::counted, .where = where, .start = at_, .last = last, .step = step};
   loop.counter = variable(name, true);
   Datum counter;
   counter.value = Numbers{{first}, 1, false};
-  store(loop.counter, std::move(counter));
+  assign(loop.counter, std::move(counter), where);
   open_.push_back(std::move(loop));
   if (for_goes_on(open_.size() - 1)) return;
   skip_block(where, false, false);
@@ -443,6 +477,7 @@ bool Interpreter::for_goes_on(std::size_t index) {
 }
 
 void Interpreter::reach_end(const Place& where) {
+  check_floor(where);
   Frame& frame = frames_.back();
   if (open_.size() == frame.open) {
     if (frame.macro == nullptr) fail(where, "there is no directive that this ends");
@@ -459,6 +494,9 @@ void Interpreter::reach_end(const Place& where) {
   if (kind == Open::Kind::repeated || kind == Open::Kind::counted) {
     const Cursor behind = at_;
     const Open loop = open_[index];
+    const bool same = behind.source == loop.start.source && behind.p > loop.start.p;
+    count_step(where, same ? static_cast<std::size_t>(behind.p - loop.start.p) / kBytesOfStep
+                           : behind.source->text.size() / kBytesOfStep);
     at_ = loop.start;
     bool again;
     if (kind == Open::Kind::repeated) {
@@ -470,7 +508,7 @@ void Interpreter::reach_end(const Place& where) {
         fail(loop.where, "the counter of this loop is no number any more");
       Datum next;
       next.value = Numbers{{number->v[0] + loop.step}, 1, false};
-      store(loop.counter, std::move(next));
+      assign(loop.counter, std::move(next), where);
       again = for_goes_on(index);
     }
     if (again) return;
@@ -480,10 +518,12 @@ void Interpreter::reach_end(const Place& where) {
 }
 
 void Interpreter::break_out(const Place& where) {
+  check_floor(where);
   std::size_t level = open_.size();
   const std::size_t base = frames_.back().open;
   while (level > base && open_[level - 1].kind == Open::Kind::chosen) --level;
-  if (level == base) fail(where, "there is no loop or #switch to leave");
+  if (level == base || (frames_.size() == floor_.first && level <= floor_.second))
+    fail(where, "there is no loop or #switch to leave");
   while (open_.size() >= level) {
     skip_block(open_.back().where, false, false);
     open_.pop_back();
@@ -491,6 +531,9 @@ void Interpreter::break_out(const Place& where) {
 }
 
 // ---- The rest
+
+/// The time that a look for a file takes, in steps.
+static constexpr std::uint64_t kStepsOfFile = 100;
 
 /// Of the folders in which a file is looked for, the path in the first that has it.
 static std::string find_file(const std::string& name, const std::vector<std::string>& folders) {
@@ -516,7 +559,8 @@ static std::vector<std::string> folders_for(const std::string& name, const std::
   return folders;
 }
 
-bool Interpreter::file_exists(const std::string& name) const {
+bool Interpreter::file_exists(const std::string& name, const Place& where) {
+  count_step(where, kStepsOfFile);
   return !find_file(name, folders_for(name, at_.source->path, document_.files[0], options_)).empty();
 }
 
@@ -524,6 +568,7 @@ void Interpreter::include(const Place& where) {
   namespace fs = std::filesystem;
   const std::string name = parse_string();
   if (next_is(';')) take();
+  count_step(where, kStepsOfFile);
   const std::vector<std::string> folders = folders_for(name, at_.source->path, document_.files[0], options_);
   const std::string path = find_file(name, folders);
   if (path.empty())
@@ -555,6 +600,7 @@ void Interpreter::set_default(const Place& where) {
   std::uint32_t depth = 0;
   parse_elements(given.elements, opening, '}', depth);
   auto texture = default_texture_ ? std::make_shared<Block>(*default_texture_) : std::make_shared<Block>();
+  count_values(where, texture->elements.size());
   texture->keyword = "texture";
   texture->where = where;
   for (Element& element : given.elements) {

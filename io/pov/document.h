@@ -57,8 +57,10 @@ struct Element {
   Value value;
 };
 
-/// `keyword { ... }`; of an entry of a map the keyword is "[". A declared name, such as that of a texture,
-/// stands for the block that it was declared as: one shared block wherever it is used, with `name`.
+/// `keyword { ... }`; of an entry of a map the keyword is "[", of a vector of more than five numbers, such as
+/// that of `matrix` or `quartic`, it is "<". Textures that were declared in a row are one `texture` that
+/// holds them as layers. A declared name, such as that of a texture, stands for the block that it was
+/// declared as: one shared block wherever it is used, with `name`.
 struct Block {
   std::string_view keyword;
   Place where;
@@ -74,12 +76,13 @@ struct FunctionNode {
     constant,   ///< `number`
     parameter,  ///< number `index`
     call,      ///< `name`: an operator ("+", "-", "*", "/", "neg", "!", "<", "<=", "=", "!=", ">=", ">", "&",
-               ///< "|"), a built-in function ("sin", ...), or "if" for select-like operators
+               ///< "|"), a built-in function ("sin", "select", ...), or "sum" or "prod" of `function`, whose
+               ///< parameters are a counter and those of this function: operands first, last, and these
     internal,  ///< `function { internal(N) }` with number `index`, as functions.inc declares f_... functions
     user,      ///< another function, `function`
     spline,    ///< `spline`, of one operand; of its vector the component `index`
     pattern,   ///< `function { pattern { ... } }` or a pigment's: `block`, of three operands; component
-              ///< `index` of a colour, 0 of a pattern
+               ///< `index` of a colour, 0 of a pattern
     transform,  ///< `function { transform { ... } }`: `block`, of three operands; component `index`
   };
   Op op = Op::constant;
@@ -98,6 +101,9 @@ struct Function {
   std::string name;  ///< by which it was declared; empty: it has none
   std::vector<std::string> parameters;
   std::vector<FunctionNode> nodes;
+  /// 1; of `function { transform ... }`, `{ spline ... }` and `{ pigment ... }` how many numbers a call
+  /// returns.
+  std::uint8_t components = 1;
 };
 
 struct Spline {

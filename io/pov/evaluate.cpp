@@ -3,11 +3,122 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 #include "io/pov/numeric.h"
 
 namespace oktett::pov {
 namespace {
+
+// ---- Transforms
+
+Matrix unit_matrix() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}}; }
+
+/// First `a`, then `b`.
+Matrix then(const Matrix& a, const Matrix& b) {
+  Matrix m{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      m[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j] + (i == 3 ? b[3][j] : 0);
+  return m;
+}
+
+Matrix inverse(const Matrix& m, const Place& where, const Document& document) {
+  Matrix r{};
+  const auto minor = [&](std::size_t i, std::size_t j) {
+    const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+  };
+  const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+  if (determinant == 0) throw document.error(where, "this transform has no inverse");
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) r[i][j] = minor(j, i) / determinant;
+  for (std::size_t j = 0; j < 3; ++j) r[3][j] = -(m[3][0] * r[0][j] + m[3][1] * r[1][j] + m[3][2] * r[2][j]);
+  return r;
+}
+
+/// About the axis `axis` by degrees, by the left-handed rule of POV-Ray.
+Matrix rotation(std::size_t axis, double degrees) {
+  Matrix m = unit_matrix();
+  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+  m[i][i] = m[j][j] = c;
+  m[i][j] = s;
+  m[j][i] = -s;
+  return m;
+}
+
+/// Computes the map of a transform. Blocks that are used again and again are computed once: transforms of
+/// transforms can double at each declaration.
+class TransformEvaluation {
+ public:
+  explicit TransformEvaluation(const Document& document) : document_(document) {}
+
+  Matrix value(const Block& block) {
+    Matrix total = unit_matrix();
+    const std::vector<Element>& elements = block.elements;
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const Element& element = elements[k];
+      ++elements_;
+      if (const BlockPtr* inner = std::get_if<BlockPtr>(&element.value)) {
+        if ((*inner)->keyword == "transform") total = then(total, shared_value(*inner));
+        continue;
+      }
+      const Word* const word = std::get_if<Word>(&element.value);
+      if (word == nullptr) continue;
+      if (word->text == "inverse") {
+        total = inverse(total, element.where, document_);
+        continue;
+      }
+      const bool is_matrix = word->text == "matrix";
+      if (!is_matrix && word->text != "translate" && word->text != "rotate" && word->text != "scale")
+        continue;
+      const Element* const next = k + 1 < elements.size() ? &elements[k + 1] : nullptr;
+      Matrix m = unit_matrix();
+      if (is_matrix) {
+        const BlockPtr* const list = next ? std::get_if<BlockPtr>(&next->value) : nullptr;
+        if (list == nullptr || (*list)->elements.size() != 12)
+          throw document_.error(element.where, "expected a vector of 12 numbers behind 'matrix'");
+        for (std::size_t i = 0; i < 12; ++i) {
+          const Numbers* const number = std::get_if<Numbers>(&(*list)->elements[i].value);
+          m[i / 3][i % 3] = number ? number->v[0] : 0;
+        }
+      } else {
+        const Numbers* const value = next ? std::get_if<Numbers>(&next->value) : nullptr;
+        if (value == nullptr)
+          throw document_.error(element.where, "expected a vector behind " + in_quotes(word->text));
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double x = value->size == 1 ? value->v[0] : value->v[i];
+          if (word->text == "translate") m[3][i] = x;
+          if (word->text == "scale") m[i][i] = x == 0 ? 1 : x;
+          if (word->text == "rotate") m = then(m, rotation(i, x));
+        }
+      }
+      total = then(total, m);
+      ++k;
+    }
+    return total;
+  }
+
+  /// How many were looked at.
+  std::size_t elements() const { return elements_; }
+
+ private:
+  Matrix shared_value(const BlockPtr& block) {
+    if (block.use_count() == 1) return value(*block);
+    const auto known = known_.find(block.get());
+    if (known != known_.end()) return known->second;
+    const Matrix result = value(*block);
+    known_.emplace(block.get(), result);
+    return result;
+  }
+
+  const Document& document_;
+  std::size_t elements_ = 0;
+  std::unordered_map<const Block*, Matrix> known_;
+};
+
+// ---- Functions
 
 /// Why a function has no value.
 struct NoValue {
@@ -17,8 +128,8 @@ struct NoValue {
 /// Computes values of functions; the number of steps and the depth are limited.
 class Evaluation {
  public:
-  Evaluation(ObjectQueries* queries, std::uint64_t& steps, std::uint64_t most_steps)
-      : queries_(queries), steps_(steps), most_steps_(most_steps) {}
+  Evaluation(ObjectQueries* queries, std::uint64_t& steps, std::uint64_t most_steps, const Document& document)
+      : queries_(queries), steps_(steps), most_steps_(most_steps), document_(document) {}
 
   /// The value, or the components of a function that has some.
   Numbers value(const Function& function, std::span<const double> arguments) {
@@ -56,10 +167,15 @@ class Evaluation {
     return values;
   }
 
+  void count(std::uint64_t steps) {
+    steps_ += steps;
+    if (steps_ > most_steps_)
+      throw NoValue{"the scene takes more than " + std::to_string(most_steps_) + " steps"};
+  }
+
   double step(const FunctionNode& node, const std::vector<double>& values,
               std::span<const double> arguments) {
-    if (++steps_ > most_steps_)
-      throw NoValue{"the scene takes more than " + std::to_string(most_steps_) + " steps"};
+    count(1 + node.operands.size() / 4);
     switch (node.op) {
       case FunctionNode::Op::constant:
         return node.number;
@@ -131,11 +247,15 @@ class Evaluation {
   }
 
   Numbers components(const FunctionNode& node, const std::vector<double>& operands) {
-    if (node.op == FunctionNode::Op::spline)
+    if (node.op == FunctionNode::Op::spline) {
+      count(steps_of(*node.spline));
       return {evaluate(*node.spline, operands[0]), static_cast<std::uint8_t>(node.spline->size), false};
+    }
     const ObjectQueries::Point point{operands[0], operands[1], operands[2]};
     if (node.op == FunctionNode::Op::transform) {
-      const Matrix m = evaluate_transform(*node.block, {});
+      TransformEvaluation transform(document_);
+      const Matrix m = transform.value(*node.block);
+      count(transform.elements());
       Numbers result;
       result.size = 3;
       for (std::size_t i = 0; i < 3; ++i)
@@ -155,60 +275,16 @@ class Evaluation {
   ObjectQueries* queries_;
   std::uint64_t& steps_;
   std::uint64_t most_steps_;
+  const Document& document_;
   int depth_ = 0;
 };
 
-// ---- Transforms
-
-Matrix unit_matrix() { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}}; }
-
-/// First `a`, then `b`.
-Matrix then(const Matrix& a, const Matrix& b) {
-  Matrix m{};
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      m[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j] + (i == 3 ? b[3][j] : 0);
-  return m;
-}
-
-Matrix inverse(const Matrix& m, const Place& where, const Document& document) {
-  Matrix r{};
-  const auto minor = [&](std::size_t i, std::size_t j) {
-    const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-    return m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
-  };
-  const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
-  if (determinant == 0) throw document.error(where, "this transform has no inverse");
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) r[i][j] = minor(j, i) / determinant;
-  for (std::size_t j = 0; j < 3; ++j) r[3][j] = -(m[3][0] * r[0][j] + m[3][1] * r[1][j] + m[3][2] * r[2][j]);
-  return r;
-}
-
-/// About the axis `axis` by degrees, by the left-handed rule of POV-Ray.
-Matrix rotation(std::size_t axis, double degrees) {
-  Matrix m = unit_matrix();
-  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-  const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
-  m[i][i] = m[j][j] = c;
-  m[i][j] = s;
-  m[j][i] = -s;
-  return m;
-}
-
 }  // namespace
 
-bool has_components(const Function& function) {
-  const FunctionNode& last = function.nodes.back();
-  switch (last.op) {
-    case FunctionNode::Op::transform:
-    case FunctionNode::Op::spline:
-      return last.operands.size() + 1 == function.nodes.size();
-    case FunctionNode::Op::pattern:
-      return last.block->keyword == "pigment" && last.operands.size() + 1 == function.nodes.size();
-    default:
-      return false;
-  }
+bool has_components(const Function& function) { return function.components > 1; }
+
+std::uint64_t steps_of(const Spline& spline) {
+  return 1 + (spline.kind == Spline::Kind::natural ? spline.points.size() / 2 : 0);
 }
 
 bool spline_kind(Keyword keyword, Spline::Kind& kind) {
@@ -232,7 +308,8 @@ bool spline_kind(Keyword keyword, Spline::Kind& kind) {
 
 Numbers FunctionCaller::call(const Function& function, std::span<const double> arguments) const {
   try {
-    return Evaluation(interpreter_.options_.queries, interpreter_.steps_, interpreter_.limits_.steps)
+    return Evaluation(interpreter_.options_.queries, interpreter_.steps_, interpreter_.limits_.steps,
+                      interpreter_.document_)
         .value(function, arguments);
   } catch (const NoValue& problem) {
     interpreter_.fail(where_, problem.message);
@@ -241,8 +318,9 @@ Numbers FunctionCaller::call(const Function& function, std::span<const double> a
 
 double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries) {
   std::uint64_t steps = 0;
+  const Document document;
   try {
-    return Evaluation(queries, steps, std::uint64_t{1} << 40).value(function, arguments).v[0];
+    return Evaluation(queries, steps, std::uint64_t{1} << 40, document).value(function, arguments).v[0];
   } catch (const NoValue& problem) {
     throw Error(problem.message);
   }
@@ -313,47 +391,7 @@ std::array<double, 5> evaluate(const Spline& spline, double at) {
 }
 
 Matrix evaluate_transform(const Block& block, const Document& document) {
-  Matrix total = unit_matrix();
-  const std::vector<Element>& elements = block.elements;
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    const Element& element = elements[k];
-    if (const BlockPtr* inner = std::get_if<BlockPtr>(&element.value)) {
-      if ((*inner)->keyword == "transform") total = then(total, evaluate_transform(**inner, document));
-      continue;
-    }
-    const Word* const word = std::get_if<Word>(&element.value);
-    if (word == nullptr) continue;
-    if (word->text == "inverse") {
-      total = inverse(total, element.where, document);
-      continue;
-    }
-    const bool is_matrix = word->text == "matrix";
-    if (!is_matrix && word->text != "translate" && word->text != "rotate" && word->text != "scale") continue;
-    const Element* const next = k + 1 < elements.size() ? &elements[k + 1] : nullptr;
-    Matrix m = unit_matrix();
-    if (is_matrix) {
-      const BlockPtr* const list = next ? std::get_if<BlockPtr>(&next->value) : nullptr;
-      if (list == nullptr || (*list)->elements.size() != 12)
-        throw document.error(element.where, "expected a vector of 12 numbers behind 'matrix'");
-      for (std::size_t i = 0; i < 12; ++i) {
-        const Numbers* const number = std::get_if<Numbers>(&(*list)->elements[i].value);
-        m[i / 3][i % 3] = number ? number->v[0] : 0;
-      }
-    } else {
-      const Numbers* const value = next ? std::get_if<Numbers>(&next->value) : nullptr;
-      if (value == nullptr)
-        throw document.error(element.where, "expected a vector behind " + in_quotes(word->text));
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double x = value->size == 1 ? value->v[0] : value->v[i];
-        if (word->text == "translate") m[3][i] = x;
-        if (word->text == "scale") m[i][i] = x == 0 ? 1 : x;
-        if (word->text == "rotate") m = then(m, rotation(i, x));
-      }
-    }
-    total = then(total, m);
-    ++k;
-  }
-  return total;
+  return TransformEvaluation(document).value(block);
 }
 
 }  // namespace oktett::pov

@@ -23,6 +23,9 @@ class FunctionCaller {
 /// Whether the function has components: that of a transform, a spline or a pigment.
 bool has_components(const Function& function);
 
+/// How many steps the value of a spline counts as.
+std::uint64_t steps_of(const Spline& spline);
+
 /// The kind that `linear_spline` and the like stand for. False: none.
 bool spline_kind(Keyword keyword, Spline::Kind& kind);
 

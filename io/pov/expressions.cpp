@@ -212,12 +212,14 @@ Numbers Interpreter::call_value(const Datum& datum, const Token& name) {
     const Spline* used = spline->get();
     if (take_if(',')) {
       const Token kind = take();
+      count_step(name.where, (*spline)->points.size());
       copy = **spline;
       if (!spline_kind(kind.keyword(), copy.kind))
         fail_expected("a kind of spline, such as linear_spline", kind);
       used = &copy;
     }
     expect(')', "behind the place on a spline");
+    count_step(name.where, steps_of(*used));
     Numbers value{evaluate(*used, at), static_cast<std::uint8_t>(used->size), false};
     return parse_postfix(value);
   }
@@ -336,7 +338,6 @@ Numbers Interpreter::parse_color(const Token& first) {
     } else {
       const bool is_srgb = name.starts_with('s');
       const std::string channels = name.substr(is_srgb ? 4 : 3);
-      const Place where = peek().where;
       const Numbers value = parse_sum();
       const auto at = [&](std::size_t i) { return value.size == 1 ? value.v[0] : value.v[i]; };
       for (std::size_t i = 0; i < 3; ++i) color.v[i] = at(i);
@@ -347,7 +348,6 @@ Numbers Interpreter::parse_color(const Token& first) {
       if (channels == "t" && value.size == 5 && value.is_color) color.v = value.v;
       if (is_srgb)
         for (std::size_t i = 0; i < 3; ++i) color.v[i] = decoded(color.v[i]);
-      (void)where;
     }
   }
   while (add_channel(color)) {}

@@ -22,6 +22,8 @@ class FunctionParser {
         if (token.is(')')) break;
         if (token.is(',')) continue;
         if (token.kind != Token::Kind::word) in_.fail_expected("the name of a parameter", token);
+        if (function_.parameters.size() == kMostParameters)
+          in_.fail(token.where, "more than " + std::to_string(kMostParameters) + " parameters of a function");
         function_.parameters.push_back(token.name->text);
       }
     } else {
@@ -43,10 +45,10 @@ class FunctionParser {
  private:
   using Op = FunctionNode::Op;
   using Index = std::uint32_t;
+  static constexpr std::size_t kMostParameters = 256;
 
   Index add(FunctionNode node) {
-    if (++in_.values_ > in_.limits_.values)
-      in_.fail(in_.peek().where, "more than " + std::to_string(in_.limits_.values) + " values");
+    in_.count_values(function_.where, 2 + node.operands.size() / 8);  // it takes as much memory
     function_.nodes.push_back(std::move(node));
     return static_cast<Index>(function_.nodes.size() - 1);
   }
@@ -56,13 +58,14 @@ class FunctionParser {
     return add(std::move(node));
   }
   Index parameter(std::size_t index) {
-    for (std::size_t i = 0; i < function_.nodes.size(); ++i)
-      if (function_.nodes[i].op == Op::parameter && function_.nodes[i].index == index)
-        return static_cast<Index>(i);
+    known_parameters_.resize(function_.parameters.size());
+    std::optional<Index>& known = known_parameters_[index];
+    if (known) return *known;
     FunctionNode node;
     node.op = Op::parameter;
     node.index = static_cast<Index>(index);
-    return add(std::move(node));
+    known = add(std::move(node));
+    return *known;
   }
   Index call(std::string_view name, std::vector<Index> operands) {
     FunctionNode node;
@@ -92,9 +95,11 @@ class FunctionParser {
     if (keyword == "spline"_kw) {
       const Token token = in_.take();
       if (is_default_) function_.parameters = {"x"};
+      if (function_.parameters.empty()) in_.fail(token.where, "a function of a spline takes a parameter");
       const Datum spline = in_.parse_spline(token);
       node.op = Op::spline;
       node.spline = *spline.get<SplinePtr>();
+      function_.components = static_cast<std::uint8_t>(node.spline->size);
       node.operands = {parameter(0)};
       add(std::move(node));
       return true;
@@ -106,6 +111,8 @@ class FunctionParser {
     node.block = in_.parse_block(token, depth_);
     if (function_.parameters.size() < 3)
       in_.fail(token.where, "a function of " + in_quotes(token.name->text) + " takes three parameters");
+    if (keyword == "transform"_kw) function_.components = 3;
+    if (keyword == "pigment"_kw) function_.components = 5;
     node.operands = {parameter(0), parameter(1), parameter(2)};
     add(std::move(node));
     return true;
@@ -217,7 +224,7 @@ class FunctionParser {
       std::vector<std::string> known = in_.names_.declared();
       known.insert(known.end(), function_.parameters.begin(), function_.parameters.end());
       in_.fail(token.where, "the function has no parameter " + in_quotes(text) +
-                                ", and nothing is declared by this name" + did_you_mean(text, known));
+                                ", and nothing is declared by this name" + similar(text, known));
     }
     const Reference reference = in_.access(token);
     const Datum datum = in_.value_of(reference, token);
@@ -314,9 +321,7 @@ class FunctionParser {
       return add(std::move(node));
     }
     if (has_components(*function)) {
-      const int size = last.op == Op::transform ? 3 : last.op == Op::spline ? last.spline->size : 5;
-      return components(token, last, std::move(arguments), function->parameters.size(),
-                        static_cast<std::uint8_t>(size));
+      return components(token, last, std::move(arguments), function->parameters.size(), function->components);
     }
     if (arguments.size() != function->parameters.size())
       in_.fail(token.where, in_quotes(token.name->text) + " takes " +
@@ -367,6 +372,7 @@ class FunctionParser {
   Function& function_;
   std::uint32_t& depth_;
   bool is_default_ = false;
+  std::vector<std::optional<Index>> known_parameters_;
 };
 
 Datum Interpreter::parse_function(const Token& keyword) {

@@ -28,10 +28,8 @@ struct Macro {
   std::string name;
   std::vector<Parameter> parameters;
   Cursor body;
+  std::size_t length = 0;  ///< of the body, in bytes
 };
-
-/// Writes to a variable or an element of an array. False: the array has changed since.
-bool store(const Reference& reference, Datum value);
 
 /// Whether a string starts with this word, such as concat.
 bool is_string_keyword(Keyword keyword);
@@ -65,12 +63,12 @@ class Interpreter {
   bool leave_frame(Token& token);
   void enter_file(const std::string& path, const Place& where);
   Source& source(const std::string& path, const Place& where);
-  void call_macro(const Token& token, const Macro& macro);
+  void call_macro(const Token& token, const std::shared_ptr<const Macro>& called);
   std::uint32_t note_call(const Macro& macro, const Place& where);
 
   // ---- Directives (directives.cpp)
   /// Follows the directive whose `#` was read. False: it has to wait, and was left unread.
-  bool follow_directive(const Token& hash, const Cursor& start);
+  bool follow_directive(const Token& hash);
   void declare(bool local);
   void undef();
   void begin_if(const Place& where, Keyword kind);
@@ -89,6 +87,26 @@ class Interpreter {
   bool is_defined();
   bool for_goes_on(std::size_t index);
   enum class Stop : std::uint8_t { end, at_else, at_elseif, at_case, at_range };
+  /// As long as it exists, no directive ends what began outside: what stands in the condition of a directive
+  /// must leave the directive and its text alone.
+  class Enclosed {
+   public:
+    explicit Enclosed(Interpreter& interpreter) : interpreter_(interpreter), outer_(interpreter.floor_) {
+      interpreter.floor_ = {interpreter.frames_.size(), interpreter.open_.size()};
+    }
+    ~Enclosed() { interpreter_.floor_ = outer_; }
+    Enclosed(const Enclosed&) = delete;
+    Enclosed& operator=(const Enclosed&) = delete;
+
+   private:
+    friend class Interpreter;
+    Interpreter& interpreter_;
+    std::pair<std::size_t, std::size_t> outer_;
+  };
+  /// Fails where the text of a condition went on into another file or macro.
+  void check_enclosed(const Place& where) const;
+  /// Fails if what ends here began outside of a condition.
+  void check_floor(const Place& where) const;
   /// Past text that is not followed, up to `#end`, or to one of the others if `stops` is set.
   Stop skip_block(const Place& opened, bool else_stops, bool case_stops);
   void select_case(const Place& where);
@@ -106,6 +124,10 @@ class Interpreter {
   void bind(Name& name, std::uint32_t scope, Reference reference);
   const Datum& value_of(const Reference& reference, const Token& name);
   [[noreturn]] void undeclared(const Token& name);
+  /// Writes to a variable or an element. False: the array has changed since.
+  bool assign(const Reference& reference, Datum value, const Place& where);
+  /// Gives a block or a function the name by which it was declared.
+  Datum named(Datum datum, const Token& name);
 
   // ---- Values (expressions.cpp)
   /// Any value that can be declared.
@@ -138,7 +160,7 @@ class Interpreter {
   std::string unescape(const Token& token);
   void check_length(std::size_t length, const Place& where);
   ObjectQueries& queries(const Token& token);
-  bool file_exists(const std::string& name) const;
+  bool file_exists(const std::string& name, const Place& where);
 
   // ---- Statements (blocks.cpp)
   void parse_elements(std::vector<Element>& elements, const Token& opening, char closing,
@@ -158,7 +180,9 @@ class Interpreter {
   [[noreturn]] void fail(const Place& where, const std::string& message) const;
   [[noreturn]] void fail_expected(const std::string& what, const Token& found) const;
   void warn(const Place& where, const std::string& message);
-  void count_step(const Place& where);
+  /// `count`: as much as the work takes longer than an ordinary step.
+  void count_step(const Place& where, std::uint64_t count = 1);
+  void count_values(const Place& where, std::uint64_t count);
   /// One more level of recursion, while it exists.
   class Level {
    public:
@@ -212,9 +236,10 @@ class Interpreter {
     std::size_t frames = ~std::size_t{0}, open = 0;
     bool all = false;  ///< not only what declares or ends
   } hold_;
+  std::pair<std::size_t, std::size_t> floor_{0, 0};  ///< frames and open directives that have to stay
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> call_numbers_;
   std::vector<std::uint32_t> streams_;  ///< of random numbers
-  std::shared_ptr<std::size_t> living_elements_ = std::make_shared<std::size_t>(0);
+  std::shared_ptr<ArrayCount> array_count_ = std::make_shared<ArrayCount>();
   BlockPtr default_texture_;
   double version_ = 3.7;
   std::uint32_t nesting_ = 0, includes_ = 0, macro_depth_ = 0;

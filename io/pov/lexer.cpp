@@ -22,6 +22,9 @@ Source::Source(const std::string& of_path, std::uint32_t of_file, bool copied)
   end = text.data() + text.size();
 }
 
+/// Names that are longer are compared with no others: that would take too long.
+static constexpr std::size_t kLongestSimilar = 100;
+
 Names::Names() {
   for (std::size_t i = 0; i < kKeywords.size(); ++i) intern(kKeywords[i]).keyword = static_cast<Keyword>(i);
 }
@@ -38,7 +41,7 @@ Name& Names::intern(std::string_view text) {
 std::vector<std::string> Names::declared() const {
   std::vector<std::string> result;
   for (const auto& [text, name] : names_)
-    if (!name->bindings.empty()) result.emplace_back(text);
+    if (!name->bindings.empty() && text.size() <= kLongestSimilar) result.emplace_back(text);
   std::sort(result.begin(), result.end());
   return result;
 }
@@ -188,6 +191,10 @@ void lex(Cursor& at, Names& names, Token& token) {
   } else {
     throw LexError{at, "unexpected character " + in_quotes({p, 1})};
   }
+}
+
+std::string similar(const std::string& name, const std::vector<std::string>& known) {
+  return name.size() <= kLongestSimilar ? did_you_mean(name, known) : "";
 }
 
 std::string in_quotes(std::string_view text) {

@@ -108,8 +108,14 @@ struct LexError {
 /// How a token reads in a message, such as "'sphere'" or "the end of the file".
 std::string describe(const Token& token);
 
+/// "; did you mean ...?", or nothing if none of `known` is similar.
+std::string similar(const std::string& name, const std::vector<std::string>& known);
+
 /// `text` in quotes, without control characters, cut short if it is long.
 std::string in_quotes(std::string_view text);
+
+/// Text that is read again takes as long as one step for so many bytes.
+inline constexpr std::size_t kBytesOfStep = 32;
 
 inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -47,13 +47,15 @@ class ObjectQueries {
 /// How much a scene may ask for. Whatever exceeds one of these is an Error that names it.
 struct Limits {
   std::uint32_t include_depth = 64;
-  std::uint32_t includes = 100'000;           ///< files included, each time counted
-  std::uint32_t macro_depth = 2'000;          ///< calls of macros within calls
-  std::uint32_t nesting = 400;                ///< of blocks, parentheses and directives within each other
-  std::uint32_t value_depth = 1'000;          ///< of declared values within values
-  std::uint64_t steps = 2'000'000'000;        ///< directives, calls of macros and functions, passes of loops
-  std::uint64_t values = 200'000'000;         ///< elements of the tree
-  std::uint64_t array_elements = 50'000'000;  ///< of all arrays together
+  std::uint32_t includes = 100'000;   ///< files included, each time counted
+  std::uint32_t macro_depth = 2'000;  ///< calls of macros within calls
+  std::uint32_t nesting = 400;        ///< of blocks, parentheses and directives within each other
+  std::uint32_t value_depth = 1'000;  ///< of declared values within values
+  /// Directives, calls of macros and functions, passes of loops; long texts, copies and the like count as
+  /// many. An endless loop takes less than ten seconds.
+  std::uint64_t steps = 50'000'000;
+  std::uint64_t values = 50'000'000;          ///< elements of the tree; blocks count as some
+  std::uint64_t array_elements = 20'000'000;  ///< of all arrays together
   std::uint64_t string_length = 1 << 20;
   std::uint64_t bytes = std::uint64_t{4} << 30;         ///< read from files, each file counted once
   std::uint64_t file_bytes = std::uint64_t{512} << 20;  ///< of one file

@@ -19,7 +19,9 @@ TextFile::TextFile(const std::string& folder, const std::string& name, Mode mode
     : mode_(mode) {
   namespace fs = std::filesystem;
   const fs::path path(name);
-  if (name.empty() || path.is_absolute()) throw "expected a path below the folder of files";
+  if (name.empty() || path.is_absolute()) throw std::string("expected a path below the folder of files");
+  // The system would read the name only up to there.
+  if (name.find('\0') != std::string::npos) throw std::string("a path has no zero byte");
   int at = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (at < 0) throw "cannot open the folder of files: " + std::string(std::strerror(errno));
   const auto fail = [&at](const std::string& message) {
@@ -37,10 +39,10 @@ TextFile::TextFile(const std::string& folder, const std::string& name, Mode mode
     }
     last = part.string();
   }
-  const int how = mode == Mode::read    ? O_RDONLY | O_NONBLOCK
+  const int how = mode == Mode::read    ? O_RDONLY
                   : mode == Mode::write ? O_WRONLY | O_CREAT | O_TRUNC
                                         : O_WRONLY | O_CREAT | O_APPEND;
-  descriptor_ = openat(at, last.c_str(), how | O_NOFOLLOW | O_CLOEXEC, 0644);
+  descriptor_ = openat(at, last.c_str(), how | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644);
   struct stat status {};
   const bool is_open = descriptor_ >= 0;
   if (!is_open) fail(errno == ELOOP ? "links are refused" : std::strerror(errno));
@@ -161,15 +163,17 @@ void Interpreter::open_file() {
     fail(name.where, std::string("#fopen is not allowed: the option ") + kFileFolderOption +
                          " names a folder for files of scenes");
   Datum datum;
+  count_step(name.where, 100);
   try {
     const std::uint64_t most = std::min(limits_.file_bytes, limits_.bytes - bytes_);
     auto file = std::make_shared<TextFile>(options_.file_folder, path, mode, most);
     bytes_ += file->size();
+    count_step(name.where, file->size() / kBytesOfStep);
     datum.value = std::move(file);
   } catch (const std::string& problem) {
     fail(name.where, "cannot open " + in_quotes(path) + ": " + problem);
   }
-  store(variable(name, false), std::move(datum));
+  assign(variable(name, false), std::move(datum), name.where);
 }
 
 TextFile& Interpreter::file_handle(const Token& token) {
@@ -183,7 +187,7 @@ void Interpreter::close_file() {
   const Token name = take_written();
   if (name.kind == Token::Kind::word && name.name->datum() == nullptr) return;
   file_handle(name).close();
-  store(name.name->bindings.back().value, {});
+  assign(name.name->bindings.back().value, {}, name.where);
 }
 
 /// `#read (FILE, NAME, ...)`. At the end of the file the handle counts as not declared.
@@ -215,7 +219,8 @@ void Interpreter::read_file() {
     if (const std::string* text = datum.get<std::string>()) check_length(text->size(), target.where);
     file->skip(used);
     skip_gaps();
-    store(reference, std::move(datum));
+    count_step(target.where);
+    assign(reference, std::move(datum), target.where);
   }
   expect(')', "behind #read");
 }
@@ -260,8 +265,7 @@ void Interpreter::write_file() {
       fail_expected("a number, a vector or a string", token);
     }
     try {
-      count_step(token.where);
-      steps_ += text.size() / 64;
+      count_step(token.where, 10 + text.size() / 16);
       file->write(text);
     } catch (const std::string& problem) {
       fail(token.where, "cannot write: " + problem);

@@ -62,9 +62,15 @@ void Interpreter::warn(const Place& where, const std::string& message) {
   if (document_.warnings.size() < most) document_.warnings.push_back({document_.location(where), message});
 }
 
-void Interpreter::count_step(const Place& where) {
-  if (++steps_ > limits_.steps)
+void Interpreter::count_step(const Place& where, std::uint64_t count) {
+  steps_ += count;
+  if (steps_ > limits_.steps)
     fail(where, "the scene takes more than " + std::to_string(limits_.steps) + " steps");
+}
+
+void Interpreter::count_values(const Place& where, std::uint64_t count) {
+  values_ += count;
+  if (values_ > limits_.values) fail(where, "more than " + std::to_string(limits_.values) + " values");
 }
 
 Interpreter::Level::Level(Interpreter& interpreter, const Place& where) : interpreter_(interpreter) {
@@ -160,13 +166,17 @@ Token Interpreter::fetch() {
       const auto* macro = datum ? datum->get<std::shared_ptr<const Macro>>() : nullptr;
       if (macro == nullptr) return token;
       const std::shared_ptr<const Macro> kept = *macro;
-      call_macro(token, *kept);
+      call_macro(token, kept);
     } else if (token.is('#')) {
-      if (!follow_directive(token, start)) {
+      if (!follow_directive(token)) {
         at_ = start;
         token.kind = Token::Kind::held;
         return token;
       }
+    } else if (token.kind == Token::Kind::end && frames_.size() > 1 && hold_.frames == frames_.size()) {
+      // A declaration that ends with the file: what follows the file must find the name declared.
+      token.kind = Token::Kind::held;
+      return token;
     } else if (token.kind != Token::Kind::end || !leave_frame(token)) {
       return token;
     }
@@ -178,6 +188,7 @@ Token Interpreter::fetch() {
 bool Interpreter::leave_frame(Token& token) {
   const Frame& frame = frames_.back();
   if (open_.size() > frame.open) fail(open_.back().where, "this directive has no #end");
+  check_floor(token.where);
   if (frames_.size() == 1) return false;
   if (frame.macro != nullptr) fail(token.where, "expected #end of the macro '" + frame.macro->name + "'");
   for (Name* name : frame.locals)
@@ -230,6 +241,7 @@ void Interpreter::enter_file(const std::string& path, const Place& where) {
   frames_.push_back(
       {at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_, version_});
   at_ = {&file, file.text.data(), file.text.data(), 1};
+  count_step(where, file.text.size() / kBytesOfStep);
 }
 
 std::uint32_t Interpreter::note_call(const Macro& macro, const Place& where) {
@@ -244,9 +256,10 @@ std::uint32_t Interpreter::note_call(const Macro& macro, const Place& where) {
   return number;
 }
 
-void Interpreter::call_macro(const Token& token, const Macro& macro) {
+void Interpreter::call_macro(const Token& token, const std::shared_ptr<const Macro>& called) {
+  const Macro& macro = *called;
   const Level level(*this, token.where);
-  count_step(token.where);
+  count_step(token.where, 1 + macro.length / kBytesOfStep);
   if (macro_depth_ >= limits_.macro_depth)
     fail(token.where,
          "more than " + std::to_string(limits_.macro_depth) + " calls of macros within each other");
@@ -293,7 +306,7 @@ void Interpreter::call_macro(const Token& token, const Macro& macro) {
          what + " takes " + std::to_string(count) + " values, found " + std::to_string(arguments.size()));
   Frame frame{at_,   open_.size(), static_cast<std::uint32_t>(frames_.size()), nullptr, nullptr,
               call_, version_};
-  frame.macro = std::get<std::shared_ptr<const Macro>>(token.name->bindings.back().value.find()->value);
+  frame.macro = called;
   frames_.push_back(std::move(frame));
   for (std::size_t i = 0; i < count; ++i) {
     Name& name = *macro.parameters[i].name;
@@ -312,8 +325,7 @@ void Interpreter::bind(Name& name, std::uint32_t scope, Reference reference) {
 void Interpreter::undeclared(const Token& name) {
   std::vector<std::string> known = names_.declared();
   known.insert(known.end(), kKeywords.begin(), kKeywords.end());
-  fail(name.where,
-       "nothing is declared as " + in_quotes(name.name->text) + did_you_mean(name.name->text, known));
+  fail(name.where, "nothing is declared as " + in_quotes(name.name->text) + similar(name.name->text, known));
 }
 
 /// What a name stands for, with the indices behind it.

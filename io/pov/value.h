@@ -43,21 +43,33 @@ struct Datum {
   }
 };
 
+/// Counts the elements of all arrays.
+struct ArrayCount {
+  std::size_t living = 0;
+  std::size_t copied = 0;  ///< since somebody looked
+};
+
 /// `array[2][3]`; the last index runs fastest. Shared by all copies until one of them is written to.
 struct Array {
   std::vector<std::size_t> sizes;
   std::vector<Datum> elements;
-  std::shared_ptr<std::size_t> living;  ///< counts the elements of all arrays
+  std::shared_ptr<ArrayCount> count;
 
-  Array(std::vector<std::size_t> of_sizes, std::size_t count, std::shared_ptr<std::size_t> counter)
-      : sizes(std::move(of_sizes)), elements(count), living(std::move(counter)) {
-    *living += elements.size();
+  Array(std::vector<std::size_t> of_sizes, std::size_t size, std::shared_ptr<ArrayCount> counter)
+      : sizes(std::move(of_sizes)), elements(size), count(std::move(counter)) {
+    count->living += elements.size();
   }
-  Array(const Array& other) : sizes(other.sizes), elements(other.elements), living(other.living) {
-    *living += elements.size();
+  Array(const Array& other) : sizes(other.sizes), elements(other.elements), count(other.count) {
+    count->living += elements.size();
+    count->copied += elements.size();
   }
   Array& operator=(const Array&) = delete;
-  ~Array() { *living -= elements.size(); }
+  ~Array() { count->living -= elements.size(); }
+
+  void append(Datum datum) {
+    elements.push_back(std::move(datum));
+    ++count->living;
+  }
 };
 
 /// A variable, or an element of an array in it: what a parameter of a macro stands for.

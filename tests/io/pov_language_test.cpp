@@ -309,6 +309,8 @@ TEST(PovLanguage, SaysWhatPovRaySays) {
       {R"(#declare A=array[2]{array[2]{1,2},array[2]{3,4}} #debug str(A[1][0],0,0))", R"(3)"},
       {R"(#declare i=0; #while(i<2) #switch(i) #case(0) #debug "zero" #break #case(1) #debug "one" #break #end #declare i=i+1; #end)",
        R"(zeroone)"},
+      {R"(#declare T=function{transform{translate <1,2,3>}} #declare G=function(x,y,z){T(x,y,z).y} #debug str(G(0,0,0),0,1))",
+       R"(2.0)"},
       {R"(#ifdef(nope) #error "x" #else #debug "e" #end #ifndef(nope) #debug "n" #end)", R"(en)"},
       {R"(#local a1=#if(1) 3; #end #debug str(a1,0,0))", R"(3)"},
   };
@@ -416,6 +418,93 @@ TEST(PovLanguage, LimitsEndEachKindOfExcess) {
     EXPECT_NE(error_of(text, options).find(message), std::string::npos) << text << error_of(text, options);
 }
 
+// What would take long counts as many steps or values.
+TEST(PovLanguage, NothingTakesForever) {
+  const auto repeated = [](const char* text, int count) {
+    std::string result;
+    for (int i = 0; i < count; ++i) result += text;
+    return result;
+  };
+  ReadOptions options;
+  options.limits.steps = 200'000;
+  options.limits.values = 1'000'000;
+  options.limits.array_elements = 1'000'000;
+  const std::string nested = "blocks, parentheses and directives within each other";
+  const std::string steps = "the scene takes more than 200000 steps";
+  const std::string comment = "/*" + std::string(100'000, 'x') + "*/";
+  const std::string points = repeated("1,<1,2,3> ", 1000);
+  const Cases cases{
+      {"#declare X = " + repeated("(", 100'000), nested},
+      {"#declare X = (" + repeated("1?", 100'000), nested},
+      {"#declare X = " + repeated("sin(", 100'000), nested},
+      {"#declare X = " + repeated("<1,", 100'000), nested},
+      {"#declare F = function { " + repeated("(", 100'000), nested},
+      {"#declare F = function { " + repeated("sum(i,1,2,", 100'000), nested},
+      {"#declare S = " + repeated("concat(", 100'000), nested},
+      {"#declare A = " + repeated("array[1] { ", 100'000), nested},
+      {"#declare A = array[2]; #declare X = " + repeated("A[", 100'000), nested},
+      {"#macro M(n) n #end #declare X = " + repeated("M(", 100'000), nested},
+      {"#declare T = " + repeated("union {", 100'000), nested},
+      {"pigment { color_map { " + repeated("[", 100'000), nested},
+      {"#while (1) " + comment + " #end", steps},
+      {"#while (1) #if (0) " + comment + " #end #end", steps},
+      {"#macro M() " + comment + " M() #end M()", steps},
+      {"#declare S = \"" + std::string(100'000, 'x') + "\"; #while (1) #declare T = S; #end", steps},
+      {"#declare A = array[100000]; #declare A[0] = 1; #while (1) #declare B = A; #declare B[0] = 2; #end",
+       steps},
+      {"#while (1) #declare A = array[100000]; #end", steps},
+      {"#while (1) #default { finish { ambient 0 } } #end", "more than 1000000 values"},
+      {"#declare S = spline { natural_spline 0,x " + points +
+           "}; #while (1) #declare X = S(.5, linear_spline); #end",
+       steps},
+      {"#declare F = function(x) { x } " + repeated("#declare F = function(x) { F(x) + F(x) } ", 100) +
+           "#declare X = F(1);",
+       steps},
+      {"#declare F = function(x) { sum(i, 1, 1e12, i * x) } #declare X = F(1);", steps},
+      {"#declare A = array[1]; #while (1) #declare B = array[1]; #declare B[0] = A; #declare A = B; #end",
+       "more than 1000 declared values within each other"},
+      {"#while (1) #if (file_exists(\"nope\")) #end #end", steps},
+      {std::string(100'000, 'a'), "nothing is declared as 'aaa"},
+  };
+  for (const auto& [text, message] : cases) {
+    const std::string said = error_of(text, options);
+    EXPECT_NE(said.find(message), std::string::npos) << text.substr(0, 100) << ": " << said.substr(0, 300);
+    EXPECT_TRUE(said.starts_with("a.pov:1:")) << said.substr(0, 300);
+  }
+}
+
+TEST(PovLanguage, TransformsThatDoubleAreComputedOnce) {
+  std::string text = "#declare T = transform { translate 0 } #declare S = transform { translate x } ";
+  for (int i = 0; i < 200; ++i) text += "#declare T = transform { transform T transform T } ";
+  text +=
+      "#declare F = function { transform { transform T transform S } } #debug vstr(3, F(1, 2, 3), \",\", 0, "
+      "0)";
+  EXPECT_EQ(debug_of(text), "2,2,3");
+  EXPECT_EQ(
+      error_of("#declare F = function { transform { scale <1,0,1> matrix 3 } } #declare X = F(1, 2, 3);"),
+      "a.pov:1:51: expected a vector of 12 numbers behind 'matrix'");
+}
+
+TEST(PovLanguage, ConditionsLeaveTheirDirectiveAlone) {
+  const std::string message = "what ends here began before the condition that this stands in";
+  EXPECT_EQ(error_of("#switch (1) #case ( #end 2) #end"), "a.pov:1:21: " + message);
+  EXPECT_EQ(error_of("#if (1) #while ( #end 1) #end"), "a.pov:1:18: " + message);
+  EXPECT_EQ(error_of("#while (1) #if ( #break 1) #end #end"), "a.pov:1:18: " + message);
+  EXPECT_EQ(error_of("#macro M() 3) #end #while (M() #end"),
+            "a.pov:1:32: the condition of this directive does not end where it began");
+  EXPECT_EQ(debug_of("#macro M(a) #debug str(a, 0, 0) #end M( #undef M 3)"), "3");
+  EXPECT_EQ(error_of("#declare A = array[1]; #if (defined(A[ #undef A 0])) #end"), "no error");
+  EXPECT_EQ(error_of("#declare F = function() { spline { 0,x, 1,y } }"),
+            "a.pov:1:27: a function of a spline takes a parameter");
+}
+
+TEST(PovLanguage, OddTextsAreReadOrRefused) {
+  EXPECT_EQ(error_of("sphere { 0, 1 }"), "no error");
+  EXPECT_EQ(error_of(std::string("box { 0, 1 } \0 ", 16)), "a.pov:1:14: unexpected character '?'");
+  EXPECT_EQ(error_of("#if (0)" + std::string(1000, '\0') + "#end"), "no error");
+  EXPECT_EQ(error_of("#declare X = " + std::string(100'000, '9') + ";"), "no error");
+}
+
 TEST(PovLanguage, BlocksHoldValuesWordsAndBlocksInOrder) {
   const Document document = read(kStart +
                                  "#declare T = texture { pigment { C } }\n"
@@ -503,6 +592,9 @@ TEST(PovLanguage, FilesStayInTheirFolder) {
   for (const std::string path : {"../t", "/tmp/t", "link/t", "a/../../t", "link"})
     EXPECT_NE(error_of("#fopen H \"" + path + "\" write", options).find("cannot open '" + path + "'"),
               std::string::npos);
+  // A zero byte would hide the dots from a comparison, but not from the system.
+  EXPECT_NE(error_of("#fopen H \"..\\0/t\" write", options).find("a path has no zero byte"),
+            std::string::npos);
   EXPECT_EQ(file_count(other), 0u);
 }
 
@@ -514,6 +606,9 @@ TEST(PovLanguage, IncludesHaveScopesAndPlaces) {
   const Document document = pov::read_pov(path);
   EXPECT_EQ(document.files.size(), 2u);
   EXPECT_EQ(numbers_at(block_at(document.statements, 0), 0).v[0], 2);
+  // A declaration may end with the file.
+  dir.write("d.inc", "#declare A = 5");
+  EXPECT_NO_THROW(pov::read_pov(dir.write("d.pov", "#include \"d.inc\" #declare B = A;")));
   const std::string again = dir.write("c.pov", "#include \"c.pov\"");
   EXPECT_THROW(pov::read_pov(again), Error);
 }
