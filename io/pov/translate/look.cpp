@@ -328,6 +328,7 @@ class TextureReader {
     if (block.keyword == "normal") return tell_normal(block);
     if (!block.name.empty() && look.name.empty()) look.name = block.name;
     Arguments a(context_, block);
+    const Block* const layer = shown_layer(block);
     std::string_view pattern;
     while (!a.at_end()) {
       const Place where = a.where();
@@ -349,7 +350,8 @@ class TextureReader {
       }
       a.take();
       if (inner->keyword == "texture" || inner->keyword == "material") {
-        if (pattern.empty() || !look.has_pigment) read(*inner, look);
+        const bool is_hidden = layer != nullptr && inner != layer;
+        if (!is_hidden && (pattern.empty() || !look.has_pigment)) read(*inner, look);
       } else if (inner->keyword == "pigment") {
         pigment(*inner, look);
       } else if (inner->keyword == "finish") {
@@ -369,6 +371,29 @@ class TextureReader {
     look.pigment = Pigment{};
     PigmentReader(context_).read(block, look.pigment);
     look.has_pigment = true;
+  }
+
+  /// Of a texture that is declared in layers, the uppermost that hides those below, else the lowest; null for
+  /// others.
+  const Block* shown_layer(const Block& block) {
+    std::vector<const Block*> layers;
+    for (const Element& e : block.elements) {
+      const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+      if (inner != nullptr && *inner != nullptr && (*inner)->keyword == "texture")
+        layers.push_back(inner->get());
+      const auto* const word = std::get_if<Word>(&e.value);
+      if (word != nullptr && is_one_of(word->text, kPatterns)) return nullptr;
+    }
+    if (layers.size() < 2) return nullptr;
+    for (std::size_t i = layers.size(); i-- > 0;) {
+      Look probe;
+      read(*layers[i], probe);
+      const PovColor mean = mean_of(probe.pigment);
+      if (mean.filter + mean.transmit == 0) return layers[i];
+      context_.tell("layers", layers[i]->where,
+                    "of a texture in layers one is shown, without those that let light pass above it");
+    }
+    return layers[0];
   }
 
   void tell_normal(const Block& block) {
