@@ -347,9 +347,8 @@ std::string error_of(const std::vector<Geometry>& things) {
 // What does not tell its nearest points is named, also inside instances; rays and inside() still work.
 TEST(ClosestShapes, WhatDoesNotTellIsAnError) {
   const std::string others =
-      " has no nearest points; these have: mesh, sphere, plane, disk, box, polygon, torus, cylinder, cone. "
-      "Ask "
-      "it with rays or with inside()";
+      " has no nearest points; these have: mesh, sphere, plane, disk, box, polygon, torus, cylinder, cone, "
+      "prism. Ask it with rays or with inside()";
   ImplicitShape implicit;
   implicit.function = compile_function("x^2 + y^2 + z^2 - 0.5");
   const Geometry field{ExactShape{implicit}, {}, kNoId};

@@ -65,6 +65,9 @@ TEST(Exact, NormalsAreGradientsOfTheOracle) {
         const SurfaceInteraction s = surface_interaction(*accel, ray, hit);
         const Vec3d expected = gradient(oracle.f, Vec3l(s.position), size);
         if (expected == Vec3d{0, 0, 0}) continue;
+        // Where edges of an outline lie on each other, both sides are outside.
+        const Vec3l step(Vec3d(s.geometric_normal) * (1e-6 * size)), at(s.position);
+        if (oracle.f(at + step) > 0 && oracle.f(at - step) > 0) continue;
         ++checked;
         EXPECT_GT(dot(expected, Vec3d(s.geometric_normal)), 1 - 1e-5)
             << names[form] << ", trial " << trial << ", ray " << i << ": " << expected.x << " " << expected.y

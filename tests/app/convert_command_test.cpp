@@ -77,7 +77,7 @@ TEST(ConvertCommand, ScenesOfPovRayBecomeSceneFiles) {
   };
   EXPECT_EQ(pixels("a.png"), pixels("b.png"));
   EXPECT_EQ(run_command(dir, {"convert", "a.pov", "b.obj", "-D", "Shade=1"}).err,
-            "b.obj: a .pov becomes a scene file; expected the output .yaml or .yml\n");
+            "oktett: b.obj: a .pov becomes a scene file; expected the output .yaml or .yml\n");
 }
 
 }  // namespace

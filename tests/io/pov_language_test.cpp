@@ -491,7 +491,8 @@ TEST(PovLanguage, ConditionsLeaveTheirDirectiveAlone) {
   EXPECT_EQ(error_of("#if (1) #while ( #end 1) #end"), "a.pov:1:18: " + message);
   EXPECT_EQ(error_of("#while (1) #if ( #break 1) #end #end"), "a.pov:1:18: " + message);
   EXPECT_EQ(error_of("#macro M() 3) #end #while (M() #end"),
-            "a.pov:1:32: the condition of this directive does not end where it began");
+            "a.pov:1:12: the condition of this directive does not end where it began; in macro 'M' called at "
+            "a.pov:1:28");
   EXPECT_EQ(debug_of("#macro M(a) #debug str(a, 0, 0) #end M( #undef M 3)"), "3");
   EXPECT_EQ(error_of("#declare A = array[1]; #if (defined(A[ #undef A 0])) #end"), "no error");
   EXPECT_EQ(error_of("#declare F = function() { spline { 0,x, 1,y } }"),

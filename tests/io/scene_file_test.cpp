@@ -357,9 +357,10 @@ TEST(LoadScene, ChoosesByExtension) {
     load_scene(files.dir.write("a.3ds", "x"));
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(files.without_directory(e.what()),
-              "a.3ds: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj, .ply, .stl, "
-              ".off, .3mf, .gltf or .glb, also packed as .gz)");
+    EXPECT_EQ(
+        files.without_directory(e.what()),
+        "a.3ds: unknown kind of file; expected a scene (.yaml, .yml, .pov) or a mesh (.obj, .ply, .stl, "
+        ".off, .3mf, .gltf or .glb, also packed as .gz)");
     EXPECT_EQ(e.kind(), ErrorKind::bad_input);
   }
 }

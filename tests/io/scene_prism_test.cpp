@@ -34,14 +34,15 @@ TEST(ScenePrism, ErrorsHaveTheirPlace) {
   const struct {
     const char *object, *error;
   } kCases[] = {
-      {"prism: {outlines: []}", "scene.yaml:2:29: expected 1 to"},
-      {"prism: {outlines: [[[0, 0], [1, 1]]]}", "scene.yaml:2:30: expected at least 3 points, found 2"},
-      {"prism: {outlines: [[[0, 0], [1, 1], [2]]]}", "scene.yaml:2:47"},
+      {"prism: {outlines: []}", "scene.yaml:2:30: expected 1 to"},
+      {"prism: {outlines: [[[0, 0], [1, 1]]]}", "scene.yaml:2:31: expected at least 3 points, found 2"},
+      {"prism: {outlines: [[[0, 0], [1, 1], [2]]]}", "scene.yaml:2:48"},
       {"prism: {curve: bezier, outlines: [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}",
-       "scene.yaml:2:45: expected 4, 7, 10, … points, 3 more for each piece; found 5"},
+       "scene.yaml:2:46: expected 4, 7, 10, … points, 3 more for each piece; found 5"},
       {"prism: {curve: cubic, outlines: [[[0, 0], [1, 0], [1, 1]]]}",
-       "scene.yaml:2:44: expected at least 4 points, found 3"},
-      {"prism: {curve: round, outlines: [[]]}", "scene.yaml:2:26: expected linear or quadratic or cubic"},
+       "scene.yaml:2:45: expected at least 4 points, found 3"},
+      {"prism: {curve: round, outlines: [[[0, 0], [1, 0], [1, 1]]]}",
+       "scene.yaml:2:27: expected linear or quadratic or cubic"},
   };
   SceneFiles files;
   for (const auto& c : kCases) {
@@ -74,11 +75,11 @@ TEST(ScenePrism, ErrorsOfSweepsAndHoles) {
   const struct {
     const char *object, *error;
   } kCases[] = {
-      {"sphere_sweep: {spheres: [[0, 0, 0, 1]]}", "scene.yaml:2:35: expected 2 to"},
+      {"sphere_sweep: {spheres: [[0, 0, 0, 1]]}", "scene.yaml:2:36: expected 2 to"},
       {"sphere_sweep: {curve: cubic, spheres: [[0, 0, 0, 1], [1, 0, 0, 1]]}",
-       "scene.yaml:2:49: expected at least 4"},
-      {"sphere_sweep: {spheres: [[0, 0, 0, 1], [1, 0, 0, -1]]}", "scene.yaml:2:50: the radius of a sphere"},
-      {"disk: {radius: 1, inner_radius: 1}", "scene.yaml:2:43: the hole must be smaller than the disk"},
+       "scene.yaml:2:50: expected at least 4"},
+      {"sphere_sweep: {spheres: [[0, 0, 0, 1], [1, 0, 0, -1]]}", "scene.yaml:2:51: the radius of a sphere"},
+      {"disk: {radius: 1, inner_radius: 1}", "scene.yaml:2:44: the hole must be smaller than the disk"},
   };
   SceneFiles files;
   for (const auto& c : kCases) {

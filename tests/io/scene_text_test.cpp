@@ -85,7 +85,7 @@ TEST(SceneText, WhatIsMissing) {
   EXPECT_TRUE(empty.objects.empty());
   SceneFiles files;
   files.dir.write("no.ttf", "this is no font");
-  expect_starts(files.error_v1("objects: [{text: {font: no.ttf, text: a}}]"), "scene.yaml:2:26");
+  expect_starts(files.error_v1("objects: [{text: {font: no.ttf, text: a}}]"), "scene.yaml:2:25");
 }
 
 }  // namespace
