@@ -42,6 +42,13 @@ run() { "$root/lib64/ld-linux-x86-64.so.2" --library-path "$libraries:$libraries
 # python [ARGUMENT...]: Python of $root, a release of Debian 12.
 python() { PYTHONHOME=$root/usr run "$root/usr/bin/python3.11" "$@"; }
 
+# povray_says <STATEMENTS: the words that POV-Ray of $root prints behind RESULT in a scene of these statements.
+povray_says() {
+  { printf '#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { location -z }\n'; cat; } >scene.pov
+  run "$root/usr/bin/povray" +Iscene.pov +W4 +H4 -F -D +WT1 >log 2>&1 || true
+  sed -n 's/.*RESULT //p' log
+}
+
 # guess TEXT: what one would expect.
 guess() { echo "guess: $*"; }
 

@@ -11,9 +11,7 @@
 unpack bookworm amd64 povray=1:3.7.0.10-2+b2
 cd "$work"
 
-cat >scene.pov <<'POV'
-#version 3.7;
-global_settings { assumed_gamma 1 }
+result=($(povray_says <<'POV'
 #declare Tip = prism { conic_sweep linear_spline -1, 1, 4, <1, 0>, <2, 0>, <1, 2>, <1, 0> }
 #declare N = <0, 0, 0>;
 #declare P = trace(Tip, <0.7, 5, 0.3>, -y, N);
@@ -21,10 +19,8 @@ global_settings { assumed_gamma 1 }
 #declare P = trace(Tip, <0.7, 5, 0.3>, <0.001, -1, 0>, N);
 #declare Tilted = vlength(N);
 #debug concat("RESULT ", str(Straight, 0, 0), " ", str(Tilted, 0, 0), " ", str(inside(Tip, <0.7, 0.6, 0.3>), 0, 0), "\n")
-camera { location -z }
 POV
-run "$root/usr/bin/povray" +Iscene.pov +W4 +H4 -F -D +WT1 >log 2>&1 || true
-result=($(sed -n 's/.*RESULT //p' log))
+))
 guess "hit, hit, and a point below the side is inside: 1 1 1"
 seen "ray along the axis (1: hit)" 0 "${result[0]}"
 seen "ray tilted by a thousandth" 1 "${result[1]}"

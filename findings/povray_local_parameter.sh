@@ -11,19 +11,15 @@
 unpack bookworm amd64 povray=1:3.7.0.10-2+b2
 cd "$work"
 
-cat >scene.pov <<'POV'
-#version 3.7;
-global_settings { assumed_gamma 1 }
+result=($(povray_says <<'POV'
 #macro Grow(p) #local p = p + 1; #end
 #macro Other(p) #local q = p + 1; #end
 #declare A = 5; Grow(A)
 #declare B = 5; Grow((B))
 #declare C = 5; Other(C)
 #debug concat("RESULT ", str(A, 0, 0), " ", str(B, 0, 0), " ", str(C, 0, 0), "\n")
-camera { location -z }
 POV
-run "$root/usr/bin/povray" +Iscene.pov +W4 +H4 -F -D +WT1 >log 2>&1 || true
-result=($(sed -n 's/.*RESULT //p' log))
+))
 guess "5, 5 and 5"
 seen "variable after #local of the parameter's name" 6 "${result[0]}"
 seen "the same, passed in parentheses" 5 "${result[1]}"

@@ -14,9 +14,7 @@
 unpack bookworm amd64 povray=1:3.7.0.10-2+b2
 cd "$work"
 
-cat >scene.pov <<'POV'
-#version 3.7;
-global_settings { assumed_gamma 1 }
+result=($(povray_says <<'POV'
 #declare F = function { pattern { ripples } }
 #declare G = function { pattern { ripples phase 0.25 } }
 #declare H = function { pattern { ripples frequency 0.25 } }
@@ -25,10 +23,8 @@ global_settings { assumed_gamma 1 }
   #declare Most = max(Most, H(i * 0.0137, i * 0.0731, i * 0.0519));
 #end
 #debug concat("RESULT ", str(F(0, 0, 0), 0, 3), " ", str(G(0, 0, 0), 0, 3), " ", str(Most, 0, 3), "\n")
-camera { location -z }
 POV
-run "$root/usr/bin/povray" +Iscene.pov +W4 +H4 -F -D +WT1 >log 2>&1 || true
-result=($(sed -n 's/.*RESULT //p' log))
+))
 guess "0.5, then 0.75 or 1, and waves that reach 1 with any frequency"
 seen "ripples at the origin" 0.500 "${result[0]}"
 seen "with phase 0.25" 0.250 "${result[1]}"

@@ -250,7 +250,7 @@ SpatialParts partition_spatial(const PrimRef* refs, std::size_t count, std::size
     for (std::size_t i = begin; i < end; ++i) {
       Box side[2];
       sides[i] = sides_of(refs[i], split, cost, triangles, side);
-      part.count[0] += sides[i] & kOnLeft, part.count[1] += sides[i] / kOnRight;
+      part.count[0] += (sides[i] & kOnLeft) != 0, part.count[1] += (sides[i] & kOnRight) != 0;
       if (sides[i] == (kOnLeft | kOnRight)) part.cut.push_back({i, {side[0], side[1]}});
     }
   });
