@@ -12,6 +12,7 @@ std::vector<Texture> asked_textures(const Scene& scene, bool data_layers) {
   };
   const bool normals = data_layers || kind == IntegratorKind::normal || kind == IntegratorKind::ao;
   const bool colors = data_layers || kind == IntegratorKind::albedo;
+  ask(scene.background_texture);
   for (const Material& m : scene.materials) {
     ask(m.opacity_texture);
     if (normals) ask(m.bump_texture), ask(m.normal_texture);

@@ -132,13 +132,15 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
     c.outer_medium = scene.medium;
     enclose_camera(scene.camera, c);
   }
-  c.background = scene.background, c.ambient_light = scene.ambient_light;
+  c.background = scene.background, c.background_texture = scene.background_texture;
+  c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   c.some_only_send_rays = traits(c.settings.kind).light_from_points &&
                           std::ranges::any_of(c.materials, &ShadingMaterial::only_sends_rays);
   if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
-  c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
+  c.opaque_background =
+      !(c.background == Color{0, 0, 0}) || c.background_texture != kNoId || lights.has_environment();
   // Shadow catchers count what they cover.
   c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches;
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));

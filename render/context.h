@@ -59,6 +59,7 @@ struct RenderContext {
   DielectricStack camera_dielectrics;  ///< the solids around the camera
   Vec3f camera_place;                  ///< where `camera_dielectrics` holds
   Color background, ambient_light;
+  std::uint32_t background_texture = kNoId;  ///< Scene::background_texture
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.
   bool opaque_background = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 namespace oktett {
@@ -17,23 +19,37 @@ struct TextureBounds {
   Color least{1, 1, 1}, greatest{1, 1, 1};
 };
 
-TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index, unsigned depth = 0) {
+TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index, unsigned depth = 0);
+
+/// Values between which all colours of a pattern lie. Between the colours of its map it is interpolated.
+std::vector<Color> ends_of(std::span<const Texture> textures, const PatternTexture& pattern, unsigned depth) {
+  std::vector<Color> ends;
+  const auto bounds_of = [&](const Color& color, TextureIndex other) {
+    return other == TextureIndex{} ? TextureBounds{color, color}
+                                   : texture_bounds(textures, other.index, depth + 1);
+  };
+  const auto add = [&](const TextureBounds& b) { ends.push_back(b.least), ends.push_back(b.greatest); };
+  if (const auto* const over = std::get_if<OverPattern>(&pattern.pattern)) {
+    const auto [color, filter, under] = std::tuple(bounds_of(over->color.color, over->color.texture),
+                                                   bounds_of(over->filter.color, over->filter.texture),
+                                                   bounds_of(over->under.color, over->under.texture));
+    add({color.least + filter.least * under.least, color.greatest + filter.greatest * under.greatest});
+  } else if (const auto* const image = std::get_if<ProjectedPattern>(&pattern.pattern)) {
+    add(texture_bounds(textures, image->texture.index, depth + 1));
+  } else {
+    for (const PatternEntry& entry : pattern.map) add(bounds_of(entry.color, entry.texture));
+    if (ends.empty()) ends = pattern.colors;
+  }
+  return ends;
+}
+
+TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index, unsigned depth) {
   TextureBounds bounds;
   if (index >= textures.size() || depth > kMostNestedTextures) return bounds;
   const Texture& t = textures[index];
-  std::vector<Color> ends{{0, 0, 0}, {1, 1, 1}};
-  // Between its colours a pattern is interpolated.
-  if (t.pattern && !t.pattern->map.empty()) {
-    ends.clear();
-    for (const PatternEntry& entry : t.pattern->map) {
-      const bool is_color = entry.texture == TextureIndex{};
-      const TextureBounds other = is_color ? TextureBounds{entry.color, entry.color}
-                                           : texture_bounds(textures, entry.texture.index, depth + 1);
-      ends.push_back(other.least), ends.push_back(other.greatest);
-    }
-  } else if (t.pattern && !t.pattern->colors.empty()) {
-    ends = t.pattern->colors;
-  }
+  std::vector<Color> ends;
+  if (t.pattern) ends = ends_of(textures, *t.pattern, depth);
+  if (ends.empty()) ends = {{0, 0, 0}, {1, 1, 1}};
   for (int k = 0; k < 3; ++k) {
     const auto value = [&](const Color& c) { return std::max(c[k] * t.gain + t.base, 0.0f); };
     bounds.least[k] = bounds.greatest[k] = value(ends[0]);

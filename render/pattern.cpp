@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/math.h"
 #include "render/pattern_noise.h"
@@ -72,6 +73,11 @@ constexpr bool kIsBlocks = requires {
 };
 
 template <class P>
+constexpr bool kShowsColors = requires {
+  P::kShowsColors;
+};
+
+template <class P>
 constexpr WaveShape own_wave() {
   return requires { P::kTriangle; }
   ? WaveShape::triangle : WaveShape::ramp;
@@ -92,7 +98,9 @@ struct PatternSample {
 PatternSample sample(const Pattern& pattern, const Vec3d& p, const PatternFrame& frame) {
   return std::visit(
       [&]<class P>(const P& kind) -> PatternSample {
-        if constexpr (kClamps<P>) {
+        if constexpr (kShowsColors<P>) {
+          return {0, 0};
+        } else if constexpr (kClamps<P>) {
           const double raw = value_of(kind, p);
           return {raw, is_plain(frame.wave) ? clamped(raw) : waved(frame.wave, WaveShape::ramp, raw)};
         } else {
@@ -115,6 +123,51 @@ bool displaces(const Pattern& pattern) {
 Vec3d place_in(const PatternTexture& texture, const Vec3d& p) {
   const Vec3d q = warped(texture.warps, p);
   return displaces(texture.pattern) ? displaced(texture.turbulence, q) : q;
+}
+
+// ---- Patterns that have colours in place of values.
+
+Color color_of(const PatternColor& shown, const Vec3d& p, const PatternTextures* others) {
+  if (shown.texture == TextureIndex{}) return shown.color;
+  return others == nullptr ? Color{0, 0, 0} : others->color(shown.texture.index, p);
+}
+
+Color shown_color(const OverPattern& over, const Vec3d& p, const PatternTextures* others) {
+  const Color filter = color_of(over.filter, p, others);
+  const Color color = color_of(over.color, p, others);
+  return filter == Color{0, 0, 0} ? color : color + filter * color_of(over.under, p, others);
+}
+
+/// The part of a turn about the y axis, from the x axis towards z.
+double turn_of(const Vec3d& p) {
+  const double turn = portable::atan2(p.z, p.x) / (2 * std::numbers::pi);
+  return turn - std::floor(turn);
+}
+
+Color shown_color(const ProjectedPattern& image, const Vec3d& p, const PatternTextures* others) {
+  if (others == nullptr || !is_finite(p)) return {0, 0, 0};
+  using enum ProjectedPattern::Projection;
+  double u = p.x, v = p.y;
+  if (image.projection != planar) {
+    const double across = std::sqrt(p.x * p.x + p.z * p.z);
+    u = turn_of(p);
+    if (image.projection == spherical) v = 0.5 + portable::atan2(p.y, across) / std::numbers::pi;
+    if (image.projection == toroidal) {
+      const double around = portable::atan2(p.y, across - 1) / (2 * std::numbers::pi);
+      v = around - std::floor(around);
+    }
+  }
+  return others->image(image.texture.index, {static_cast<float>(u), static_cast<float>(v)});
+}
+
+/// The colour of a pattern without values; nothing for all others.
+std::optional<Color> shown_color(const Pattern& pattern, const Vec3d& p, const PatternTextures* others) {
+  return std::visit(
+      [&]<class P>(const P& kind) -> std::optional<Color> {
+        if constexpr (kShowsColors<P>) return shown_color(kind, p, others);
+        return std::nullopt;
+      },
+      pattern);
 }
 
 /// The colour at a place of a pattern whose value there is `value`.
@@ -177,6 +230,8 @@ double detail_of(const PatternTexture& texture) {
 bool is_broken(const PatternTexture& texture, const PatternSample& before, const PatternSample& after) {
   return std::visit(
       [&]<class P>(const P& kind) {
+        // Values of these are colours already.
+        if constexpr (kShowsColors<P>) return std::abs(after.value - before.value) > 0.25;
         bool steps = kIsBlocks<P> || requires { P::kSteps; };
         if constexpr (requires { kind.solid; }) steps = kind.solid;
         if (steps) {
@@ -202,6 +257,7 @@ double pattern_value(const Pattern& pattern, const Vec3d& p) {
 
 Color pattern_color(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
   const Vec3d place = place_in(texture, texture.to_pattern.point(p));
+  if (const std::optional<Color> shown = shown_color(texture.pattern, place, others)) return *shown;
   const PatternFrame frame{texture.turbulence, texture.wave, others};
   return color_at(texture, sample(texture.pattern, place, frame).value, place, others);
 }
@@ -214,6 +270,8 @@ Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const Pattern
   };
   const auto height_at = [&](const Vec3d& q) -> Height {
     const Vec3d place = place_in(texture, q);
+    if (const std::optional<Color> shown = shown_color(texture.pattern, place, others))
+      return {{shown->x, shown->x}, shown->x};
     const PatternSample found = sample(texture.pattern, place, frame);
     if (!texture.map.empty()) return {found, double{color_at(texture, found.value, place, others).x}};
     const std::vector<Color>& colors = texture.colors;

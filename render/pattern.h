@@ -121,10 +121,11 @@ using Pattern =
                  AgatePattern, AngularPattern, BoxedPattern, BrickPattern, CellsPattern, CracklePattern,
                  CubicPattern, CylindricalPattern, DentsPattern, DoubleSpiralPattern, FractalPattern,
                  FunctionPattern, GranitePattern, HexagonPattern, LayersPattern, LeopardPattern,
-                 LinearPattern, OnionPattern, PlanarPattern, QuiltedPattern, RingsPattern, RipplesPattern,
-                 SphericalPattern, SpiralPattern, TexturePattern, WavesPattern, WrinklesPattern>;
+                 LinearPattern, OnionPattern, OverPattern, PlanarPattern, ProjectedPattern, QuiltedPattern,
+                 RingsPattern, RipplesPattern, SphericalPattern, SpiralPattern, TexturePattern, WavesPattern,
+                 WrinklesPattern>;
 
-/// A colour, or another texture, at a value of a pattern.
+/// What a pattern shows at one of its values.
 struct PatternEntry {
   double at = 0;
   Color color{0, 0, 0};
@@ -133,7 +134,7 @@ struct PatternEntry {
 };
 
 /// Most textures of which each is an entry of the one before. A deeper one is black.
-inline constexpr unsigned kMostNestedTextures = 8;
+inline constexpr unsigned kMostNestedTextures = 16;
 
 /// A pattern with its colours and where it lies.
 struct PatternTexture {
@@ -158,9 +159,12 @@ class PatternTextures {
   virtual ~PatternTextures() = default;
   /// The colour of a texture (into Scene::textures) where the object's own place is `position`.
   virtual Color color(std::uint32_t texture, const Vec3d& position) const = 0;
+  /// The colour of a texture at these texture coordinates, of an image not filtered.
+  virtual Color image(std::uint32_t texture, const Vec2f& uv) const = 0;
 };
 
-/// The value in [0, 1] of the pattern at a point of its own space; 0 where the point is not finite.
+/// The value in [0, 1] of the pattern at a point of its own space; 0 where the point is not finite, and for
+/// patterns that have colours in place of values.
 double pattern_value(const Pattern& pattern, const Vec3d& p);
 
 /// The colour at a point of the object's space. Without `others`, entries that are textures are black.
@@ -176,6 +180,9 @@ template <class AnyPattern, class F>
 void for_each_nested_texture(AnyPattern& pattern, F&& f) {
   for (auto& entry : pattern.map) f(entry.texture.index);
   if (auto* const shown = std::get_if<TexturePattern>(&pattern.pattern)) f(shown->texture.index);
+  if (auto* const image = std::get_if<ProjectedPattern>(&pattern.pattern)) f(image->texture.index);
+  if (auto* const over = std::get_if<OverPattern>(&pattern.pattern))
+    f(over->color.texture.index), f(over->filter.texture.index), f(over->under.texture.index);
 }
 
 }  // namespace oktett

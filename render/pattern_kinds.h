@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/color.h"
 #include "core/description.h"
 #include "core/vec3.h"
 #include "kernels/functions/tape_data.h"
@@ -14,6 +15,13 @@ namespace oktett {
 struct TextureIndex {
   std::uint32_t index = 0xffffffff;
   bool operator==(const TextureIndex&) const = default;
+};
+
+/// A colour, or another texture.
+struct PatternColor {
+  Color color{0, 0, 0};
+  TextureIndex texture{};  ///< instead of the colour, if it is given
+  bool operator==(const PatternColor&) const = default;
 };
 
 /// Defines a pattern without parameters.
@@ -256,6 +264,43 @@ struct TexturePattern {
   static constexpr ShapeInfo kShapeInfo{"brightness", "by how bright another texture is"};
   void describe(auto& p) { p.required("of", texture, "the texture"); }
   bool operator==(const TexturePattern&) const = default;
+};
+
+/// A texture through which another is seen, as colour + filter * under. It has colours in place of values.
+struct OverPattern {
+  PatternColor color, filter, under;
+
+  static constexpr ShapeInfo kShapeInfo{"over",
+                                        "a texture and what is seen through it: color + filter * under"};
+  static constexpr bool kShowsColors = true;
+  void describe(auto& p) {
+    p.required("color", color, "what lies above: a color, number or texture, less what passes through");
+    p.required("filter", filter, "the part of what lies below that passes through");
+    p.required("under", under, "what lies below");
+  }
+  bool operator==(const OverPattern&) const = default;
+};
+
+/// An image laid on objects without uv: its left lower corner is at uv (0, 0), the right upper one at (1, 1).
+struct ProjectedPattern {
+  enum class Projection : std::uint8_t { planar, cylindrical, spherical, toroidal };
+  TextureIndex texture;
+  Projection projection = Projection::planar;
+
+  static constexpr ShapeInfo kShapeInfo{"projected", "an image by the place in space in place of uv"};
+  static constexpr bool kShowsColors = true;
+  void describe(auto& p) {
+    p.required("of", texture, "the image");
+    p.choice(
+        "onto", projection,
+        {{"planar", Projection::planar},
+         {"cylindrical", Projection::cylindrical},
+         {"spherical", Projection::spherical},
+         {"toroidal", Projection::toroidal}},
+        "x and y are u and v; or u is the angle about the y axis and v the height, the angle from below, or "
+        "the angle around the ring of radius 1");
+  }
+  bool operator==(const ProjectedPattern&) const = default;
 };
 
 /// Waves of many lengths from random points at the distance 1 from the origin.

@@ -478,6 +478,8 @@ struct Scene {
   Film film;
   IntegratorSettings integrator;
   Color background{0, 0, 0};
+  /// Multiplies it, into `textures`: a pattern is looked up where its direction meets the unit sphere.
+  std::uint32_t background_texture = kNoId;
   Color ambient_light{1, 1, 1};
   std::vector<Material> materials;
   std::vector<Texture> textures;

@@ -76,6 +76,14 @@ class NestedTextures final : public PatternTextures {
     return texture_color(textures_, texture, place, depth_);
   }
 
+  Color image(std::uint32_t texture, const Vec2f& uv) const override {
+    if (depth_ > kMostNestedTextures) return {0, 0, 0};
+    TexturePlace place = place_;
+    place.uv = uv, place.dx = place.dy = {};
+    place.second = place;
+    return texture_color(textures_, texture, place, depth_);
+  }
+
  private:
   const Textures& textures_;
   const TexturePlace& place_;
@@ -103,6 +111,13 @@ static Color texture_color(const Textures& textures, std::uint32_t texture, cons
 
 Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place) {
   return texture_color(textures, texture, place, 0);
+}
+
+Color background_color(const RenderContext& context, const Vec3f& direction) {
+  if (context.background_texture == kNoId) return context.background;
+  TexturePlace place;
+  place.position = normalize(Vec3d(direction));
+  return context.background * texture_color(context, context.background_texture, place);
 }
 
 /// The number of a texture; 1 for kNoId.

@@ -36,6 +36,9 @@ struct Textures {
   const TextureSampler* images = nullptr;
 };
 
+/// The light of the background from a direction.
+Color background_color(const RenderContext& context, const Vec3f& direction);
+
 /// The colour of a texture; white for kNoId.
 Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place);
 inline Color texture_color(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {

@@ -42,7 +42,8 @@ std::string schema_of(Schema& schema, const Range& range, const InverseOf&) {
 // ---- Colours.
 
 /// A colour, a number, which is a grey, or a texture.
-void read_color(SceneLoad& load, const YamlNode& node, PatternEntry& entry) {
+template <class ColorOrTexture>
+void read_color(SceneLoad& load, const YamlNode& node, ColorOrTexture& entry) {
   if (node.kind == YamlKind::map) {
     entry.texture.index = read_texture(load, node);
   } else if (node.kind == YamlKind::scalar && !load.values.text(node).starts_with('#')) {
@@ -280,12 +281,7 @@ struct PatternKeys {
 
   void describe(auto& p) {
     pattern.describe(p);
-    p.optional("colors", EvenColors{texture}, whole(1, kMostColors),
-               "or textures, in equal steps; black and white if left out");
-    p.optional("map", PlacedColors{texture}, whole(1, kMostPlaces),
-               "instead: [value, color or number or texture] for ascending values from 0 to 1");
-    p.not_both("colors", "map", "expected 'colors' or 'map', not both", "map");
-    texture.wave.describe(p);
+    if constexpr (!requires { P::kShowsColors; }) describe_values(p);
     p.optional("turbulence", TurbulenceValue{texture.turbulence},
                "displaces places by noise, nearest to the pattern");
     p.optional("warps", WarpList{texture.warps}, whole(1, kMostWarps),
@@ -293,9 +289,25 @@ struct PatternKeys {
     p.optional("transform", InverseOf{texture.to_pattern},
                "from the space of the pattern to that of the object");
   }
+
+ private:
+  /// What becomes of its values.
+  void describe_values(auto& p) {
+    p.optional("colors", EvenColors{texture}, whole(1, kMostColors),
+               "or textures, in equal steps; black and white if left out");
+    p.optional("map", PlacedColors{texture}, whole(1, kMostPlaces),
+               "instead: [value, color or number or texture] for ascending values from 0 to 1");
+    p.not_both("colors", "map", "expected 'colors' or 'map', not both", "map");
+    texture.wave.describe(p);
+  }
 };
 
 }  // namespace
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, PatternColor& color) {
+  read_color(load, node, color);
+}
+std::string schema_of(Schema& schema, const Range&, const PatternColor&) { return color_schema(schema); }
 
 std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node) {
   std::optional<PatternTexture> texture;

@@ -85,7 +85,9 @@ std::string schema_of(Schema& schema, const Range& range, const CausticSettings&
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
 
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, TextureIndex& texture);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, PatternColor& color);
 std::string schema_of(Schema& schema, const Range& range, const TextureIndex& texture);
+std::string schema_of(Schema& schema, const Range& range, const PatternColor& color);
 
 // ---- What is read by hand, each with what it may be.
 

@@ -164,7 +164,8 @@ struct SceneKeys {
     p.optional("camera", scene.camera, "of the whole scene if left out");
     p.optional("film", scene.film, "size and form of the picture");
     p.optional("integrator", scene.integrator, "how light is computed");
-    p.optional("background", scene.background, "colour where rays meet nothing");
+    p.optional("background", Textured<Color>{scene.background, scene.background_texture},
+               "colour where rays meet nothing, or a pattern on the sphere of directions");
     p.optional("ambient_light", scene.ambient_light, "colour that `ambient` of materials multiplies");
     p.optional("media", Section{define_media, media_schema, true}, "media by name");
     p.optional("medium", Section{read_outer_medium, medium_schema},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/light_groups.h"
+#include "render/shading_point.h"
 
 namespace oktett {
 namespace {
@@ -59,9 +60,9 @@ void add_shadow_to_layers(const RenderContext& context, Wavefront& wavefront, co
 void add_environment_to_layers(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                                const Color& environment, float weight) {
   const Color throughput = wavefront.rays.throughput[ray];
-  add_to_layer(wavefront, ray, 0, throughput * context.background);
-  add_infinite(context, wavefront, ray, wavefront.rays.rays[ray].direction, environment,
-               throughput * (environment * weight));
+  const Vec3f direction = wavefront.rays.rays[ray].direction;
+  add_to_layer(wavefront, ray, 0, throughput * background_color(context, direction));
+  add_infinite(context, wavefront, ray, direction, environment, throughput * (environment * weight));
 }
 
 }  // namespace oktett

@@ -7,6 +7,7 @@
 #include "accel/accel.h"
 #include "accel/surface/offset_origin.h"
 #include "render/photon/caustics.h"
+#include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
@@ -238,19 +239,23 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
     const bool is_met = context.shadows_decide && pdf > 0;
     const float weight = by_photons || is_met ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
     const Color light = InteractionBlock::get(found.radiance, k);
-    wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
+    const Color background = background_color(context, wavefront.rays.rays[i].direction);
+    wavefront.radiance.set(i, wavefront.rays.throughput[i] * (background + light * weight));
     if (context.light_groups != nullptr) add_environment_to_layers(context, wavefront, i, light, weight);
   }
 }
 
-/// For rays that meet nothing: sets the light of the environment if there is one, else adds the background to
-/// the layer of its light group.
+/// For rays that meet nothing: sets the light of the environment and of a textured background, and adds the
+/// background to the layer of its light group.
 void add_background(const RenderContext& context, Wavefront& wavefront) {
   std::uint32_t misses[EnvironmentValues::kMost];
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
     if (wavefront.hits.item[i] != kNoId) continue;
     if (!context.sampled->has_environment()) {
+      if (context.background_texture != kNoId)
+        wavefront.radiance.set(
+            i, wavefront.rays.throughput[i] * background_color(context, wavefront.rays.rays[i].direction));
       add_to_layer(wavefront, i, 0, wavefront.radiance[i]);
       continue;
     }
@@ -271,7 +276,8 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
                   wavefront.hit_rays);
   if (context.light_groups != nullptr) wavefront.sampled_emitter.resize_uninitialized(count);
   if (wavefront.hit_rays.size() < count &&
-      (context.sampled->has_environment() || context.light_groups != nullptr))
+      (context.sampled->has_environment() || context.light_groups != nullptr ||
+       context.background_texture != kNoId))
     add_background(context, wavefront);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
   start_penumbras(context, wavefront);
@@ -419,8 +425,9 @@ void catch_rays(const RenderContext& context, Wavefront& wavefront) {
     const Hit hit = wavefront.hits[i];
     if (is_shadow_catcher(world, hit, identify(*world.accel, hit).user)) {
       sample += samples.caught();
+      const Vec3f direction = wavefront.rays.rays[i].direction;
       const Color light =
-          context.background + context.sampled->set().environment_radiance(wavefront.rays.rays[i].direction);
+          background_color(context, direction) + context.sampled->set().environment_radiance(direction);
       samples.behind.set(sample, light);
     } else if (context.without_others == nullptr && !world.has_holes) {
       wavefront.hits.item[i] = kNoId;

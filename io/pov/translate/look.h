@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "io/pov/translate/context.h"
+#include "io/pov/translate/texture.h"
 
 namespace oktett::pov {
 
@@ -34,6 +34,7 @@ class Wardrobe {
   Node invisible(const Place& where);
 
  private:
+  Look look_of(const Dress& dress, const std::shared_ptr<const Block>& default_texture);
   Node name_node(const Place& where, const std::string& name) { return context_.tree.text(where, name); }
 
   Context& context_;
@@ -42,9 +43,8 @@ class Wardrobe {
   std::set<std::string> taken_;
 };
 
-Node color_node(Tree& tree, const Place& where, const Vec3d& rgb);
-
-/// A colour that stands for a whole pigment: the mean of its map.
-PovColor mean_color(Context& context, const Block& pigment);
+/// The pigments of a block `sky_sphere` by the direction, as a value of scene files: a colour or a texture.
+/// Null if it has none.
+Node sky_node(Context& context, const Block& block);
 
 }  // namespace oktett::pov

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/pov/translate/look.h"
 #include "io/pov/translate/objects.h"
 #include "io/pov/translate/view.h"
 
@@ -46,7 +47,10 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
   if (k == "light_source") return objects.add_light(block, {});
   if (k == "global_settings") return read_global_settings(context, *block, s);
   if (k == "background") return read_background(context, *block, s);
-  if (k == "sky_sphere") return read_sky_sphere(context, *block, s);
+  if (k == "sky_sphere") {
+    if (const Node sky = sky_node(context, *block)) s.sky = sky;
+    return;
+  }
   if (k == "light_group") {
     context.tell("light_group", block->where, "lights of a 'light_group' light all objects");
     for (const Element& e : block->elements)
@@ -92,7 +96,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(integrator, "depth",
            tree.number(s.settings_place, std::clamp(std::round(s.max_trace_level), 0.0, 64.0)));
   tree.put(root, "integrator", integrator);
-  tree.put(root, "background", color_node(tree, s.background_place, s.background));
+  tree.put(root, "background", s.sky != nullptr ? s.sky : color_node(tree, s.background_place, s.background));
   if (!(s.ambient == Vec3d{1, 1, 1}))
     tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
   if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);

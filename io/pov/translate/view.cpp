@@ -284,18 +284,4 @@ void read_background(Context& context, const Block& block, Surroundings& s) {
   }
 }
 
-void read_sky_sphere(Context& context, const Block& block, Surroundings& s) {
-  Arguments a(context, block);
-  while (!a.at_end()) {
-    const Block* const inner = a.peek_block();
-    a.take();
-    if (inner == nullptr) continue;
-    if (inner->keyword == "sky_sphere") read_sky_sphere(context, *inner, s);
-    if (inner->keyword != "pigment") continue;
-    if (inner->elements.size() > 1)
-      context.tell("sky_sphere", inner->where, "one colour stands for the pattern of the sky");
-    s.background = mean_color(context, *inner).rgb, s.background_place = block.where;
-  }
-}
-
 }  // namespace oktett::pov

@@ -21,10 +21,10 @@ struct Surroundings {
   double max_trace_level = 5;
   Vec3d ambient{1, 1, 1};
   Vec3d background{0, 0, 0};
+  Node sky = nullptr;  ///< instead, if there is one
   Place background_place{}, settings_place{};
 };
 void read_global_settings(Context& context, const Block& block, Surroundings& surroundings);
 void read_background(Context& context, const Block& block, Surroundings& surroundings);
-void read_sky_sphere(Context& context, const Block& block, Surroundings& surroundings);
 
 }  // namespace oktett::pov

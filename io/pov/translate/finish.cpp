@@ -1,0 +1,114 @@
+#include "io/pov/translate/finish.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace oktett::pov {
+namespace {
+
+class FinishReader {
+ public:
+  explicit FinishReader(Context& context) : context_(context) {}
+
+  void read(const Block& block, Finish& f) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      if (const Block* const inner = a.peek_block()) {
+        if (inner->keyword == "finish")
+          read(*inner, f);
+        else if (inner->keyword == "reflection")
+          read_reflection(*inner, f);
+        else
+          tell(inner->keyword, inner->where);
+        a.take();
+        continue;
+      }
+      const Place where = a.where();
+      const std::string_view word = a.peek_word();
+      a.take();
+      read_word(word, where, a, f);
+    }
+  }
+
+ private:
+  void tell(std::string_view what, const Place& where) {
+    context_.tell(fmt::format("finish {}", what), where,
+                  fmt::format("'{}' of a finish has no meaning here, and is left out", what));
+  }
+
+  void read_word(std::string_view word, const Place& where, Arguments& a, Finish& f) {
+    if (word == "ambient")
+      f.ambient = a.vector("a colour");
+    else if (word == "emission")
+      f.emission = a.vector("a colour");
+    else if (word == "diffuse") {
+      a.take_word("albedo");
+      f.diffuse = a.number("a number");
+      if (a.is_numbers())
+        a.take(), context_.tell("diffuse back", where, "light on the back of surfaces is left out");
+    } else if (word == "phong")
+      a.take_word("albedo"), f.phong = a.number("a number");
+    else if (word == "phong_size")
+      f.phong_size = a.number("a number");
+    else if (word == "specular")
+      a.take_word("albedo"), f.specular = a.number("a number");
+    else if (word == "roughness")
+      f.roughness = a.number("a number");
+    else if (word == "metallic")
+      f.metallic = a.is_numbers() ? a.number("a number") : 1;
+    else if (word == "reflection")
+      f.reflection = f.reflection_max = a.vector("a colour"), f.varies = false;
+    else if (word == "ior")
+      f.ior = a.number("a number");
+    else if (word == "refraction" || word == "caustics" || word == "fade_power" || word == "fade_distance" ||
+             word == "use_alpha") {
+      if (a.is_numbers()) a.take();
+    } else if (word == "conserve_energy")
+      a.flag();
+    else if (word == "brilliance" || word == "crand" || word == "reflection_exponent") {
+      if (a.number("a number") != (word == "crand" ? 0 : 1)) tell(word, where);
+    } else if (is_filler(word)) {
+    } else {
+      tell(word, where);
+      while (a.is_numbers()) a.take();
+    }
+  }
+
+  static bool is_filler(std::string_view word) {
+    return word.empty() || word == "color" || word == "colour" || word == "rgb";
+  }
+
+  void read_reflection(const Block& block, Finish& f) {
+    Arguments a(context_, block);
+    std::vector<Vec3d> colors;
+    while (!a.at_end()) {
+      const Place where = a.where();
+      if (a.is_numbers()) {
+        colors.push_back(a.vector("a colour"));
+      } else if (a.take_word("fresnel")) {
+        f.fresnel = a.flag();
+      } else if (a.take_word("metallic")) {
+        f.reflection_metallic = a.is_numbers() ? a.number("a number") : 1;
+      } else if (a.take_word("falloff") || a.take_word("exponent")) {
+        a.number("a number");
+        tell("falloff of reflection", where);
+      } else {
+        a.take();
+      }
+    }
+    if (colors.empty()) return;
+    f.reflection = colors[0], f.reflection_max = colors.back();
+    f.varies = colors.size() > 1;
+  }
+
+  Context& context_;
+};
+
+}  // namespace
+
+void read_finish(Context& context, const Block& block, Finish& finish) {
+  FinishReader(context).read(block, finish);
+}
+
+}  // namespace oktett::pov

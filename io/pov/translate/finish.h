@@ -1,0 +1,23 @@
+#pragma once
+/// \file Finishes. Within io/ only.
+
+#include <optional>
+
+#include "io/pov/translate/context.h"
+
+namespace oktett::pov {
+
+/// What blocks `finish` say.
+struct Finish {
+  Vec3d ambient{0.1, 0.1, 0.1}, emission{0, 0, 0};
+  double diffuse = 0.6, phong = 0, phong_size = 40, specular = 0, roughness = 0.05, metallic = 0;
+  Vec3d reflection{0, 0, 0}, reflection_max{0, 0, 0};
+  bool varies = false, fresnel = false;  ///< of the reflection
+  double reflection_metallic = 0;
+  std::optional<double> ior;  ///< as in old scenes
+};
+
+/// Reads a finish on top of what is known of it.
+void read_finish(Context& context, const Block& block, Finish& finish);
+
+}  // namespace oktett::pov

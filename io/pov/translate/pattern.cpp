@@ -1,0 +1,441 @@
+#include "io/pov/translate/pattern.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/pov/translate/functions.h"
+
+namespace oktett::pov {
+namespace {
+
+/// What a pattern is called in scene files; nothing if they have none.
+struct PatternName {
+  std::string_view word, key;
+};
+constexpr PatternName kNames[] = {
+    {"agate", "agate"},
+    {"average", ""},
+    {"boxed", "boxed"},
+    {"bozo", "noise"},
+    {"brick", "brick"},
+    {"bumps", "noise"},
+    {"cells", "cells"},
+    {"checker", "checker"},
+    {"crackle", "crackle"},
+    {"cubic", "cubic"},
+    {"cylindrical", "cylindrical"},
+    {"density_file", ""},
+    {"dents", "dents"},
+    {"facets", ""},
+    {"function", "function"},
+    {"gradient", "linear"},
+    {"granite", "granite"},
+    {"hexagon", "hexagon"},
+    {"julia", "fractal"},
+    {"leopard", "leopard"},
+    {"mandel", "fractal"},
+    {"marble", "layers"},
+    {"onion", "onion"},
+    {"pavement", ""},
+    {"planar", "planar"},
+    {"proximity", ""},
+    {"quilted", "quilted"},
+    {"radial", "angular"},
+    {"ripples", "ripples"},
+    {"slope", ""},
+    {"spherical", "spherical"},
+    {"spiral1", "spiral"},
+    {"spiral2", "double_spiral"},
+    {"spotted", "noise"},
+    {"square", ""},
+    {"tiling", ""},
+    {"triangular", ""},
+    {"waves", "waves"},
+    {"wood", "rings"},
+    {"wrinkles", "wrinkles"},
+    {"aoi", ""},
+};
+constexpr std::array<std::string_view, 7> kLists{"brick",  "checker",    "cubic", "hexagon",
+                                                 "square", "triangular", "object"};
+/// What stands before one value that changes nothing here.
+constexpr std::array<std::string_view, 5> kIgnored{"noise_generator", "quick_color", "quick_colour",
+                                                   "interpolate", "accuracy"};
+constexpr std::pair<std::string_view, std::string_view> kWaves[] = {
+    {"ramp_wave", "ramp"},       {"triangle_wave", "triangle"}, {"sine_wave", "sine"},
+    {"scallop_wave", "scallop"}, {"cubic_wave", "cubic"},       {"poly_wave", "poly"}};
+constexpr std::array<std::string_view, 4> kMappings{"planar", "cylindrical", "spherical", "toroidal"};
+
+template <std::size_t N>
+bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+/// The value of `turbulence`.
+Node turbulence_node(Tree& tree, const Place& where, const PovPattern& p) {
+  const Vec3d& t = p.turbulence;
+  const Node amount = t.x == t.y && t.x == t.z ? tree.number(where, t.x) : tree.vector(where, t);
+  if (p.octaves == 6 && p.lambda == 2 && p.omega == 0.5) return amount;
+  const Node map = tree.map(where, "amount", amount);
+  if (p.octaves != 6) tree.put(map, "octaves", tree.number(where, p.octaves));
+  if (p.lambda != 2) tree.put(map, "lambda", tree.number(where, p.lambda));
+  if (p.omega != 0.5) tree.put(map, "omega", tree.number(where, p.omega));
+  return map;
+}
+
+}  // namespace
+
+void PovPattern::move(const Moves& moves) {
+  if (moves.empty()) return;
+  if (modifiers.empty() || !std::holds_alternative<Moves>(modifiers.back())) modifiers.emplace_back(Moves{});
+  std::get<Moves>(modifiers.back()).add(moves);
+}
+
+std::vector<PovColor> default_colors(const PovPattern& pattern) {
+  const PovColor red{{1, 0, 0}}, green{{0, 1, 0}}, blue{{0, 0, 1}};
+  if (pattern.word == "brick") return {{{0.5, 0.5, 0.5}}, {{0.6, 0.15, 0.15}}};
+  if (pattern.word == "hexagon" || pattern.word == "triangular") return {blue, green, red};
+  if (pattern.word == "cubic") return {red, {{1, 1, 0}}, green, {{0, 1, 1}}, blue, {{1, 0, 1}}};
+  return {blue, green};
+}
+
+// ---- Reading.
+
+void PatternReader::set(Node map, std::string_view key, Node value) {
+  for (std::size_t i = 0; i + 1 < map->items.size(); i += 2)
+    if (map->items[i]->text == key) {
+      map->items[i + 1] = value;
+      return;
+    }
+  context_.tree.put(map, key, value);
+}
+
+void PatternReader::put(PovPattern& p, std::string_view key, double value) {
+  set(p.own, key, context_.tree.number(p.where, value));
+}
+
+bool PatternReader::take(Arguments& a, PovPattern& p) {
+  Moves moves;
+  if (take_moves(context_, a, moves)) {
+    p.move(moves);
+    return true;
+  }
+  return take_block(a, p) || take_pattern(a, p) || take_modifier(a, p);
+}
+
+bool PatternReader::take_block(Arguments& a, PovPattern& p) {
+  const Block* const block = a.peek_block();
+  if (block == nullptr) return false;
+  const std::string_view k = block->keyword;
+  if (k == "warp") {
+    a.take();
+    if (const Node node = warp(*block)) p.modifiers.emplace_back(node);
+    return true;
+  }
+  const bool is_image = k == "image_pattern";
+  if (!is_image && k != "pigment_pattern") return false;
+  a.take();
+  p.word = k, p.where = block->where, p.key = "brightness", p.own = context_.tree.map(block->where);
+  p.is_list = false;
+  Node of = nullptr;
+  if (is_image) {
+    PovPattern image;
+    take_image(*block, image);
+    if (!image.key.empty()) of = pattern_node(context_, image, nullptr);
+  } else {
+    of = pigment_texture_(*block);
+  }
+  if (of != nullptr)
+    context_.tree.put(p.own, "of", of);
+  else
+    p.key = "";
+  return true;
+}
+
+bool PatternReader::take_pattern(Arguments& a, PovPattern& p) {
+  const std::string_view word = a.peek_word();
+  const auto* const name = std::ranges::find(kNames, word, &PatternName::word);
+  if (word.empty() || name == std::end(kNames)) return false;
+  p.word = word, p.where = a.where(), p.key = name->key, p.own = context_.tree.map(p.where);
+  p.is_list = is_one_of(word, kLists);
+  a.take();
+  take_own_keys(a, p);
+  return true;
+}
+
+void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
+  Tree& tree = context_.tree;
+  if (p.key == "noise") {
+    put(p, "octaves", 1);
+  } else if (p.word == "gradient") {
+    const Vec3d direction = a.vector("a vector");
+    tree.put(p.own, "direction", tree.vector(p.where, direction));
+    if (!(length(direction) > 0)) p.key = "";
+  } else if (p.word == "spiral1" || p.word == "spiral2") {
+    put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));
+  } else if (p.word == "julia" || p.word == "mandel") {
+    take_fractal(a, p);
+  } else if (p.word == "function") {
+    const auto* const function =
+        a.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a.peek().value);
+    if (function == nullptr || *function == nullptr) {
+      p.key = "";
+      return;
+    }
+    a.take();
+    if (const auto text = function_text(context_, **function, p.where))
+      tree.put(p.own, "f", tree.text(p.where, *text));
+    else
+      p.key = "";
+  }
+}
+
+void PatternReader::take_fractal(Arguments& a, PovPattern& p) {
+  Tree& tree = context_.tree;
+  if (p.word == "julia") {
+    set(p.own, "set", tree.word(p.where, "julia"));
+    const Vec3d constant = a.vector("a complex number");
+    put(p, "real", std::clamp(constant.x, -1e3, 1e3)), put(p, "imaginary", std::clamp(constant.y, -1e3, 1e3));
+  }
+  if (a.is_numbers()) put(p, "iterations", std::clamp(std::trunc(a.number("a number")), 1.0, 1e5));
+}
+
+/// What may stand anywhere behind some patterns.
+bool PatternReader::take_later_key(Arguments& a, PovPattern& p) {
+  Tree& tree = context_.tree;
+  const Place where = a.where();
+  const auto is = [&](std::string_view pattern, std::string_view word) {
+    return p.word == pattern && a.take_word(word);
+  };
+  if (is("agate", "agate_turb")) {
+    put(p, "folding", std::clamp(a.number("a number"), 0.0, 100.0));
+  } else if (is("brick", "brick_size")) {
+    set(p.own, "brick", tree.vector(where, a.vector("a size")));
+  } else if (is("brick", "mortar")) {
+    put(p, "mortar", std::max(0.0, a.number("a size")));
+  } else if (is("quilted", "control0")) {
+    put(p, "control0", std::clamp(a.number("a number"), -10.0, 10.0));
+  } else if (is("quilted", "control1")) {
+    put(p, "control1", std::clamp(a.number("a number"), -10.0, 10.0));
+  } else if (is("crackle", "form")) {
+    set(p.own, "form", tree.vector(where, a.vector("a vector")));
+  } else if (is("crackle", "metric")) {
+    put(p, "metric", std::clamp(a.number("a number"), 0.1, 100.0));
+  } else if (is("crackle", "offset")) {
+    put(p, "offset", std::max(0.0, a.number("a number")));
+  } else if (is("crackle", "solid")) {
+    set(p.own, "solid", tree.flag(where, a.flag()));
+  } else if (p.key == "fractal" && a.take_word("magnet")) {
+    const bool second = a.number("1 or 2") == 2;
+    set(p.own, "formula", tree.word(where, second ? "magnet2" : "magnet1"));
+    if (a.take_word("mandel"))
+      p.word = "mandel", take_fractal(a, p);
+    else if (a.take_word("julia"))
+      p.word = "julia", take_fractal(a, p);
+  } else if (p.key == "fractal" && a.take_word("exponent")) {
+    put(p, "power", std::clamp(std::trunc(a.number("a number")), 2.0, 33.0));
+  } else if (p.key == "fractal" && (a.peek_word() == "interior" || a.peek_word() == "exterior")) {
+    constexpr std::string_view kOutside[] = {"constant",  "steps",       "real",
+                                             "imaginary", "real_square", "imaginary_square", "size"};
+    constexpr std::string_view kInside[] = {"constant",  "least_size",  "real",
+                                            "imaginary", "real_square", "imaginary_square", "square"};
+    const bool inside = a.peek_word() == "interior";
+    a.take();
+    const auto kind = static_cast<std::size_t>(std::clamp(a.number("a kind"), 0.0, 100.0));
+    const double factor = a.is_numbers() ? a.number("a factor") : 1;
+    const std::string_view key = inside ? "interior" : "exterior";
+    if (kind > 6) {
+      context_.tell("fractal exterior", where, fmt::format("'{}' of the kind {} is read as 1", key, kind));
+      return true;
+    }
+    set(p.own, key, tree.word(where, inside ? kInside[kind] : kOutside[kind]));
+    put(p, inside ? "interior_factor" : "exterior_factor", factor);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool PatternReader::take_modifier(Arguments& a, PovPattern& p) {
+  if (take_later_key(a, p)) return true;
+  const std::string_view word = a.peek_word();
+  for (const auto& [wave, name] : kWaves) {
+    if (word != wave) continue;
+    a.take();
+    p.wave = name;
+    if (name == "poly" && a.is_numbers()) p.exponent = std::clamp(a.number("an exponent"), 1e-3, 1e3);
+    return true;
+  }
+  if (a.take_word("turbulence"))
+    p.turbulence = a.vector("a number");
+  else if (a.take_word("octaves"))
+    p.octaves = std::clamp(std::trunc(a.number("a number")), 1.0, 16.0);
+  else if (a.take_word("lambda"))
+    p.lambda = std::clamp(a.number("a number"), 0.01, 100.0);
+  else if (a.take_word("omega"))
+    p.omega = std::clamp(a.number("a number"), 0.0, 10.0);
+  else if (a.take_word("frequency"))
+    p.frequency = std::clamp(a.number("a number"), -1e9, 1e9);
+  else if (a.take_word("phase"))
+    p.phase = std::clamp(a.number("a number"), -1e9, 1e9);
+  else if (a.take_word("uv_mapping"))
+    p.uses_uv = a.flag();
+  else if (is_one_of(word, kIgnored)) {
+    a.take();
+    if (a.is_numbers()) a.take();
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// An item of `warps`; null, after a warning, for warps that scene files do not have.
+Node PatternReader::warp(const Block& block) {
+  Arguments a(context_, block);
+  Tree& tree = context_.tree;
+  const Place where = a.where();
+  const std::string_view kind = a.peek_word();
+  if (!a.at_end()) a.take();
+  const Node keys = tree.map(where);
+  if (kind == "repeat") {
+    const Vec3d width = a.vector("a vector");
+    tree.put(keys, "width", tree.vector(where, width));
+    while (!a.at_end()) {
+      if (a.take_word("offset"))
+        set(keys, "offset", tree.vector(where, a.vector("a vector")));
+      else if (a.take_word("flip"))
+        set(keys, "flip", tree.vector(where, a.vector("a vector")));
+      else
+        a.take();
+    }
+    if ((width.x != 0) + (width.y != 0) + (width.z != 0) != 1) return nullptr;
+    return tree.map(where, "repeat", keys);
+  }
+  if (kind == "black_hole") {
+    tree.put(keys, "center", tree.vector(where, a.vector("a point")));
+    const double radius = a.number("a radius");
+    tree.put(keys, "radius", tree.number(where, radius));
+    while (!a.at_end()) {
+      const std::string_view word = a.peek_word();
+      a.take();
+      if (word == "strength" || word == "falloff")
+        set(keys, word, tree.number(where, std::max(word == "falloff" ? 0.0 : -1e9, a.number("a number"))));
+      else if (word == "inverse")
+        set(keys, "inverse", tree.flag(where, a.flag()));
+      else if (word == "repeat" || word == "turbulence")
+        context_.tell("black holes", where, fmt::format("'{}' of a black hole is left out", word));
+    }
+    return radius > 0 ? tree.map(where, "black_hole", keys) : nullptr;
+  }
+  if (kind == "turbulence") {
+    PovPattern p;
+    p.turbulence = a.vector("a number");
+    while (!a.at_end())
+      if (!take_modifier(a, p)) a.take();
+    return tree.map(where, "turbulence", turbulence_node(tree, where, p));
+  }
+  if (is_one_of(kind, kMappings)) {
+    bool has_direction = true;
+    const auto orientation = [&](const Vec3d& v) {
+      has_direction = length(v) > 0;
+      set(keys, "orientation", tree.vector(where, v));
+    };
+    if (kind == "planar" && a.is_numbers()) {
+      orientation(a.vector("a vector"));
+      if (a.is_numbers()) set(keys, "distance", tree.number(where, a.number("a distance")));
+    }
+    while (!a.at_end()) {
+      if (a.take_word("orientation"))
+        orientation(a.vector("a vector"));
+      else if (a.take_word("dist_exp"))
+        set(keys, "exponent", tree.number(where, a.number("a number")));
+      else if (a.take_word("major_radius"))
+        set(keys, "major_radius", tree.number(where, a.number("a radius")));
+      else
+        a.take();
+    }
+    return has_direction ? tree.map(where, kind, keys) : nullptr;
+  }
+  context_.tell("warp", where, fmt::format("a warp '{}' has no meaning here, and is left out", kind));
+  return nullptr;
+}
+
+void PatternReader::take_image(const Block& block, PovPattern& p) {
+  Arguments a(context_, block);
+  Tree& tree = context_.tree;
+  p.word = "image_map", p.where = block.where, p.key = "", p.own = tree.map(block.where), p.is_list = false;
+  std::string_view onto = "planar";
+  while (!a.at_end()) {
+    const Place where = a.where();
+    const Element& element = a.take();
+    if (const auto* const path = std::get_if<std::string>(&element.value)) {
+      const Node image = tree.map(where, "file", tree.text(where, find_file(context_, where, *path)));
+      // Its numbers are those of the scene's gamma then.
+      if (context_.gamma > 1.6) tree.put(image, "color_space", tree.word(where, "linear"));
+      set(p.own, "of", image);
+      p.image = image;
+      p.key = "projected";
+    }
+    const auto* const word = std::get_if<Word>(&element.value);
+    if (word == nullptr) continue;
+    if (word->text == "map_type" && a.is_numbers()) {
+      const double type = a.number("a kind");
+      onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
+    } else if (word->text == "once") {
+      context_.tell("once", where, "'once' of an image has no meaning here: it repeats");
+    }
+  }
+  if (onto != "planar") set(p.own, "onto", tree.word(block.where, onto));
+}
+
+// ---- Writing.
+
+double scale_of(const PovPattern& pattern) {
+  double volume = 1;
+  for (const auto& modifier : pattern.modifiers)
+    if (const auto* const moves = std::get_if<Moves>(&modifier)) volume *= std::abs(moves->all.determinant());
+  const double scale = std::cbrt(volume);
+  return std::isfinite(scale) ? scale : 1;
+}
+
+Node pattern_node(Context& context, const PovPattern& p, Node values) {
+  Tree& tree = context.tree;
+  const Place& where = p.where;
+  if (p.image != nullptr && p.uses_uv) return p.image;
+  const Node keys = tree.map(where);
+  if (p.own != nullptr) keys->items = p.own->items;
+  if (values != nullptr) tree.put(keys, p.is_list ? "colors" : "map", values);
+  const bool has_values = p.key != "projected" && p.key != "over";
+  if (has_values) {
+    if (!p.wave.empty()) tree.put(keys, "wave", tree.word(where, p.wave));
+    if (p.exponent != 1) tree.put(keys, "exponent", tree.number(where, p.exponent));
+    if (p.frequency != 1) tree.put(keys, "frequency", tree.number(where, p.frequency));
+    if (p.phase != 0) tree.put(keys, "phase", tree.number(where, p.phase));
+  }
+  if (!(p.turbulence == Vec3d{0, 0, 0})) tree.put(keys, "turbulence", turbulence_node(tree, where, p));
+  // The last moves are the transform; what is nearer to the pattern stands among the warps.
+  std::size_t count = p.modifiers.size();
+  Node transform = nullptr;
+  if (count > 0)
+    if (const auto* const last = std::get_if<Moves>(&p.modifiers.back())) {
+      transform = moves_node(tree, where, *last);
+      --count;
+    }
+  if (count > 0) {
+    const Node warps = tree.list(where);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (const auto* const moves = std::get_if<Moves>(&p.modifiers[i])) {
+        if (const Node node = moves_node(tree, where, *moves)) Tree::push(warps, tree.map(where, "transform", node));
+      } else {
+        Tree::push(warps, std::get<Node>(p.modifiers[i]));
+      }
+    }
+    tree.put(keys, "warps", warps);
+  }
+  if (transform != nullptr) tree.put(keys, "transform", transform);
+  return tree.map(where, p.key, keys);
+}
+
+}  // namespace oktett::pov

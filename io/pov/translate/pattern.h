@@ -1,0 +1,73 @@
+#pragma once
+/// \file Patterns: what pigments, normals and textures have in common. Within io/ only.
+
+#include <functional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "io/pov/translate/context.h"
+
+namespace oktett::pov {
+
+/// A pattern with what displaces places in it and what becomes of its values.
+struct PovPattern {
+  std::string_view word;  ///< that of the language; empty: there is none
+  Place where;
+  std::string_view key;  ///< the pattern of scene files that means it; empty: there is none
+  Node own = nullptr;    ///< a map of the pattern's own keys
+  Node image = nullptr;  ///< of an image, its texture by uv
+  bool is_list = false;  ///< it has a list of colours in place of a map
+  bool uses_uv = false;
+
+  /// Transforms, and warps as items of scene files, in the order in which they are applied to the pattern.
+  std::vector<std::variant<Moves, Node>> modifiers;
+  Vec3d turbulence{0, 0, 0};
+  double octaves = 6, lambda = 2, omega = 0.5;
+  std::string_view wave;  ///< empty: the pattern's own
+  double exponent = 1, frequency = 1, phase = 0;
+
+  bool is_none() const { return word.empty(); }
+  void move(const Moves& moves);
+};
+
+/// The colours that the pattern has if none are given; `is_list` patterns only.
+std::vector<PovColor> default_colors(const PovPattern& pattern);
+
+/// Reads patterns.
+class PatternReader {
+ public:
+  /// The texture that a pigment within a pattern means; null if it has none.
+  using PigmentTexture = std::function<Node(const Block&)>;
+
+  PatternReader(Context& context, PigmentTexture pigment_texture)
+      : context_(context), pigment_texture_(std::move(pigment_texture)) {}
+
+  /// Takes what stands next if it is a pattern or changes one. Returns whether it is.
+  bool take(Arguments& arguments, PovPattern& pattern);
+  /// Takes what an `image_map` and the like says.
+  void take_image(const Block& block, PovPattern& pattern);
+
+ private:
+  bool take_pattern(Arguments& a, PovPattern& p);
+  bool take_block(Arguments& a, PovPattern& p);
+  void take_own_keys(Arguments& a, PovPattern& p);
+  void take_fractal(Arguments& a, PovPattern& p);
+  bool take_modifier(Arguments& a, PovPattern& p);
+  bool take_later_key(Arguments& a, PovPattern& p);
+  Node warp(const Block& block);
+  void put(PovPattern& p, std::string_view key, double value);
+  void set(Node map, std::string_view key, Node value);
+
+  Context& context_;
+  PigmentTexture pigment_texture_;
+};
+
+/// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
+/// its values are numbers.
+Node pattern_node(Context& context, const PovPattern& pattern, Node values);
+
+/// How many times longer a length is in space than in the pattern, in the mean over all directions.
+double scale_of(const PovPattern& pattern);
+
+}  // namespace oktett::pov

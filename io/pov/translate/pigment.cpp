@@ -1,0 +1,357 @@
+#include "io/pov/translate/pigment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/pattern.h"
+
+namespace oktett::pov {
+namespace {
+
+/// Pigments within each other that are read; deeper ones are their mean colour.
+constexpr unsigned kMostNested = kMostNestedTextures - 2;
+/// Most places of a map in a scene file.
+constexpr std::size_t kMostPlaces = 256;
+
+PovColor blend(const PovColor& a, const PovColor& b, double t) {
+  return {a.rgb * (1 - t) + b.rgb * t, a.filter * (1 - t) + b.filter * t,
+          a.transmit * (1 - t) + b.transmit * t};
+}
+
+PovColor color_of(const PigmentEntry& entry) {
+  return entry.pigment != nullptr ? mean_of(*entry.pigment) : entry.color;
+}
+
+PovColor color_at(const std::vector<PigmentEntry>& map, double at) {
+  if (at <= map.front().at) return color_of(map.front());
+  for (std::size_t i = 1; i < map.size(); ++i) {
+    if (at > map[i].at) continue;
+    const double width = map[i].at - map[i - 1].at;
+    return width > 0 ? blend(color_of(map[i - 1]), color_of(map[i]), (at - map[i - 1].at) / width)
+                     : color_of(map[i]);
+  }
+  return color_of(map.back());
+}
+
+/// Reads pigments.
+class PigmentReader {
+ public:
+  explicit PigmentReader(Context& context)
+      : context_(context), patterns_(context, [this](const Block& block) { return texture_of(block); }) {}
+
+  void read(Arguments& a, Pigment& p) {
+    while (!a.at_end()) step(a, p);
+  }
+
+  void read(const Block& block, Pigment& p) {
+    if (!block.name.empty() && p.name.empty()) p.name = block.name;
+    Arguments a(context_, block);
+    read(a, p);
+  }
+
+ private:
+  void step(Arguments& a, Pigment& p) {
+    const std::string_view word = a.peek_word();
+    if (word == "average") {
+      p.is_average = true, p.pattern = {}, p.entries.clear();
+      p.pattern.word = a.take_word(word) ? "average" : "", p.pattern.where = a.where();
+      return;
+    }
+    const Node before = p.pattern.own;
+    if (patterns_.take(a, p.pattern)) {
+      if (p.pattern.own != before) p.is_average = false, p.entries.clear();
+      return;
+    }
+    if (const Block* const block = a.peek_block()) {
+      inner(*block, p);
+      a.take();
+    } else if (a.is_numbers()) {
+      const PovColor color = a.color("a colour");
+      if (p.pattern.is_list)
+        p.entries.push_back({0, color, nullptr});
+      else
+        p.solid = color, p.pattern.word = {};
+    } else if (word == "filter" || word == "transmit") {
+      a.take();
+      a.take_word("all");
+      const double part = a.is_numbers() ? a.number("a number") : 0;
+      if (word == "filter")
+        p.solid.filter = p.filter_all = part;
+      else
+        p.solid.transmit = p.transmit_all = part;
+    } else {
+      a.take();
+    }
+  }
+
+  void inner(const Block& block, Pigment& p) {
+    const std::string_view k = block.keyword;
+    if (k == "pigment" || k == "texture") {
+      if (p.pattern.is_list)
+        p.entries.push_back(nested(block));
+      else
+        read(block, p);
+    } else if (k == "color_map" || k == "colour_map" || k == "pigment_map" || k == "texture_map") {
+      p.entries.clear();
+      read_map(block, p);
+      if (!p.is_average) std::ranges::stable_sort(p.entries, {}, &PigmentEntry::at);
+    } else if (k == "image_map") {
+      p.is_average = false, p.entries.clear();
+      patterns_.take_image(block, p.pattern);
+      image_opacity(block, p);
+    } else if (k == "object") {
+      context_.tell("object pattern", block.where, "the pattern 'object' has no meaning here");
+    }
+  }
+
+  /// `filter all` and `transmit all` of an image; of single colours of its palette the mean is not known.
+  void image_opacity(const Block& block, Pigment& p) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      const std::string_view word = a.peek_word();
+      const Place where = a.where();
+      a.take();
+      if (word != "filter" && word != "transmit") continue;
+      if (a.take_word("all"))
+        (word == "filter" ? p.filter_all : p.transmit_all) = a.number("a number");
+      else
+        context_.tell("palette", where, "what passes through single colours of an image is left out");
+    }
+  }
+
+  PigmentEntry nested(const Block& block) {
+    Arguments a(context_, block);
+    return nested(a, block);
+  }
+
+  /// A pigment whose words stand next.
+  PigmentEntry nested(Arguments& a, const Block& block) {
+    auto inner = std::make_shared<Pigment>();
+    ++depth_;
+    read(a, *inner);
+    --depth_;
+    if (is_solid(*inner)) return {0, inner->solid, nullptr};
+    if (depth_ < kMostNested) return {0, {}, std::move(inner)};
+    context_.tell("nested pigments", block.where,
+                  fmt::format("pigments within each other deeper than {} levels show their mean colour", kMostNested));
+    return {0, mean_of(*inner), nullptr};
+  }
+
+  void read_map(const Block& block, Pigment& p) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      const Block* const entry = a.peek_block();
+      a.take();
+      if (entry == nullptr) continue;
+      if (entry->keyword == "[")
+        read_entry(*entry, p);
+      else
+        read_map(*entry, p);  // one that was declared
+    }
+  }
+
+  /// `[at color]`, `[from to color color]` or `[at pigment]`.
+  void read_entry(const Block& block, Pigment& p) {
+    Arguments a(context_, block);
+    const double from = a.number("a number");
+    std::size_t numbers = 0;
+    for (const Element& e : block.elements) numbers += std::holds_alternative<Numbers>(e.value);
+    if (numbers == 4 && numbers_alone(block)) {
+      const double to = a.number("a number");
+      take_color_words(a);
+      p.entries.push_back({from, a.color("a colour"), nullptr});
+      take_color_words(a);
+      p.entries.push_back({to, a.color("a colour"), nullptr});
+      return;
+    }
+    PigmentEntry entry = nested(a, block);
+    entry.at = from;
+    p.entries.push_back(std::move(entry));
+  }
+
+  /// Whether an entry has numbers and names of colours alone, so that it has no pattern.
+  static bool numbers_alone(const Block& block) {
+    return std::ranges::all_of(block.elements, [](const Element& e) {
+      const auto* const word = std::get_if<Word>(&e.value);
+      return std::holds_alternative<Numbers>(e.value) || (word != nullptr && is_color_word(word->text));
+    });
+  }
+  static bool is_color_word(std::string_view word) { return word == "color" || word == "colour"; }
+  void take_color_words(Arguments& a) {
+    while (a.take_word("color") || a.take_word("colour")) {
+    }
+  }
+
+  Node texture_of(const Block& block) {
+    Pigment p;
+    ++depth_;
+    read(block, p);
+    --depth_;
+    if (is_solid(p) || depth_ >= kMostNested) return nullptr;
+    return pigment_node(context_, block.where, p, [](const PovColor& c) { return c.rgb; });
+  }
+
+  Context& context_;
+  PatternReader patterns_;
+  unsigned depth_ = 0;
+};
+
+// ---- Writing.
+
+/// A number of a map, or a texture.
+Node entry_node(Context& context, const Place& where, const PigmentEntry& entry, const ColorPart& part) {
+  return entry.pigment != nullptr ? pigment_node(context, where, *entry.pigment, part)
+                                  : color_node(context.tree, where, part(entry.color));
+}
+
+/// The entries of a map within [0, 1], with further ones where `part` is not linear.
+std::vector<PigmentEntry> even_map(const std::vector<PigmentEntry>& map) {
+  std::vector<PigmentEntry> all;
+  const auto add = [&](double at, const PigmentEntry& entry) {
+    all.push_back(entry);
+    all.back().at = at;
+  };
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (i > 0) {
+      const PigmentEntry &a = map[i - 1], &b = map[i];
+      const bool colors = a.pigment == nullptr && b.pigment == nullptr && b.at > a.at;
+      const auto at = [&](double place) { return blend(a.color, b.color, (place - a.at) / (b.at - a.at)); };
+      if (colors && a.at < 0 && b.at > 0) add(0, {0, at(0), nullptr});
+      const bool passes = a.color.filter != b.color.filter || a.color.transmit != b.color.transmit;
+      constexpr int kSteps = 8;
+      if (colors && passes && !(a.color.rgb == b.color.rgb) && map.size() * kSteps < kMostPlaces)
+        for (int k = 1; k < kSteps; ++k) {
+          const double place = a.at + (b.at - a.at) * k / kSteps;
+          if (place > 0 && place < 1) add(place, {0, at(place), nullptr});
+        }
+      if (colors && a.at < 1 && b.at > 1) add(1, {0, at(1), nullptr});
+    }
+    if (map[i].at >= 0 && map[i].at <= 1) add(map[i].at, map[i]);
+  }
+  if (all.empty()) add(0, map.front().at > 1 ? map.front() : map.back());
+  if (all.size() > kMostPlaces) all.resize(kMostPlaces);
+  return all;
+}
+
+/// The mean of the entries, as a chain of what lies over each other.
+Node average_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {
+  Tree& tree = context.tree;
+  double sum = 0;
+  for (const PigmentEntry& entry : p.entries) sum += entry.at;
+  if (!(sum > 0)) return nullptr;
+  Node below = color_node(tree, where, {0, 0, 0});
+  for (const PigmentEntry& entry : p.entries) {
+    const double weight = entry.at / sum;
+    const Node keys = tree.map(where);
+    if (entry.pigment == nullptr) {
+      tree.put(keys, "color", color_node(tree, where, part(entry.color) * weight));
+    } else {
+      const Node node = pigment_node(context, where, *entry.pigment, part);
+      // A colour has been given above.
+      if (node->kind == YamlKind::map) tree.put(node, "gain", tree.number(where, weight));
+      tree.put(keys, "color", node);
+    }
+    tree.put(keys, "filter", tree.number(where, 1)), tree.put(keys, "under", below);
+    below = tree.map(where, "over", keys);
+  }
+  return below;
+}
+
+Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
+  const PovColor white{{1, 1, 1}, p.filter_all, p.transmit_all}, black{{0, 0, 0}, p.filter_all, p.transmit_all};
+  const double base = part(black).x, gain = part(white).x - base;
+  const Node node = pattern_node(context, p.pattern, nullptr);
+  if (gain == 1 && base == 0) return node;
+  Tree& tree = context.tree;
+  // The image itself may stand in several places, but not with what belongs to this one.
+  const Node copy = tree.map(p.pattern.where);
+  copy->items = node->items;
+  tree.put(copy, "gain", tree.number(p.pattern.where, gain));
+  if (base != 0) tree.put(copy, "base", tree.number(p.pattern.where, base));
+  return copy;
+}
+
+}  // namespace
+
+void read_pigment(Context& context, const Block& block, Pigment& pigment) {
+  PigmentReader(context).read(block, pigment);
+}
+
+void read_pigment(Context& context, Arguments& arguments, Pigment& pigment) {
+  PigmentReader(context).read(arguments, pigment);
+}
+
+bool is_solid(const Pigment& p) { return p.pattern.is_none(); }
+
+PovColor mean_of(const Pigment& p) {
+  if (is_solid(p)) return p.solid;
+  std::vector<PovColor> colors;
+  if (p.is_average || p.pattern.is_list)
+    for (const PigmentEntry& entry : p.entries) colors.push_back(color_of(entry));
+  else if (!p.entries.empty())
+    for (int i = 0; i < 64; ++i) colors.push_back(color_at(p.entries, (i + 0.5) / 64));
+  if (colors.empty() && p.pattern.is_list) colors = default_colors(p.pattern);
+  if (colors.empty()) return {{0.5, 0.5, 0.5}, p.filter_all, p.transmit_all};
+  PovColor sum;
+  for (const PovColor& c : colors)
+    sum.rgb = sum.rgb + c.rgb, sum.filter += c.filter, sum.transmit += c.transmit;
+  const auto count = static_cast<double>(colors.size());
+  return {sum.rgb / count, sum.filter / count, sum.transmit / count};
+}
+
+bool is_transparent(const Pigment& p) {
+  const auto passes = [](const PovColor& c) { return c.filter + c.transmit > 0; };
+  if (is_solid(p)) return passes(p.solid);
+  if (p.filter_all + p.transmit_all > 0 && p.pattern.key == "projected") return true;
+  return std::ranges::any_of(p.entries, [&](const PigmentEntry& entry) {
+    return entry.pigment != nullptr ? is_transparent(*entry.pigment) : passes(entry.color);
+  });
+}
+
+Node pigment_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {
+  Tree& tree = context.tree;
+  const auto mean = [&] { return color_node(tree, where, part(mean_of(p))); };
+  if (is_solid(p)) return color_node(tree, where, part(p.solid));
+  if (p.is_average) {
+    const Node node = p.entries.empty() ? nullptr : average_node(context, where, p, part);
+    return node != nullptr ? node : mean();
+  }
+  const PovPattern& pattern = p.pattern;
+  if (pattern.key.empty() || (pattern.uses_uv && pattern.key != "projected")) {
+    context.tell(fmt::format("pattern {}{}", pattern.word, pattern.uses_uv ? " by uv" : ""), pattern.where,
+                 fmt::format("pattern '{}'{} has no meaning here; one colour stands for it", pattern.word,
+                             pattern.uses_uv ? " by uv" : ""));
+    return mean();
+  }
+  if (pattern.key == "projected") return image_node(context, p, part);
+  const Node values = tree.list(where);
+  if (pattern.is_list) {
+    std::vector<PigmentEntry> list = p.entries;
+    const std::vector<PovColor> usual = default_colors(pattern);
+    list.resize(std::min(list.size(), usual.size()));
+    for (std::size_t i = list.size(); i < usual.size(); ++i) list.push_back({0, usual[i], nullptr});
+    for (const PigmentEntry& entry : list) Tree::push(values, entry_node(context, where, entry, part));
+    return pattern_node(context, pattern, values);
+  }
+  // Without a map the values are greys.
+  const std::vector<PigmentEntry> usual{{0, {{0, 0, 0}}, nullptr}, {1, {{1, 1, 1}}, nullptr}};
+  for (const PigmentEntry& entry : even_map(p.entries.empty() ? usual : p.entries)) {
+    const Node item = tree.list(where);
+    Tree::push(item, tree.number(where, entry.at));
+    Tree::push(item, entry_node(context, where, entry, part));
+    Tree::push(values, item);
+  }
+  return pattern_node(context, pattern, values);
+}
+
+Node color_node(Tree& tree, const Place& where, const Vec3d& rgb) {
+  // Single precision is what a colour has; its shortest text reads better.
+  const Node node = tree.list(where);
+  for (int k = 0; k < 3; ++k)
+    Tree::push(node, tree.word(where, fmt::format("{}", static_cast<float>(std::max(0.0, rgb[k])) + 0.0f)));
+  return node;
+}
+
+}  // namespace oktett::pov

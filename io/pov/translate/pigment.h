@@ -1,0 +1,54 @@
+#pragma once
+/// \file Pigments as textures. Within io/ only.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/pov/translate/pattern.h"
+
+namespace oktett::pov {
+
+struct Pigment;
+
+/// What a pattern shows at one of its values, or in a list: a colour or another pigment.
+struct PigmentEntry {
+  double at = 0;
+  PovColor color;
+  std::shared_ptr<const Pigment> pigment;  ///< null: the colour
+};
+
+/// What blocks `pigment` say, one after the other.
+struct Pigment {
+  PovColor solid;
+  PovPattern pattern;                 ///< none: one colour
+  std::vector<PigmentEntry> entries;  ///< of a map, by ascending places, or of a list
+  bool is_average = false;            ///< the mean of the entries, whose `at` are weights
+  double filter_all = 0, transmit_all = 0;  ///< of an image
+  std::string name;
+};
+
+/// Reads a pigment on top of what is known of it.
+void read_pigment(Context& context, const Block& block, Pigment& pigment);
+/// Reads what stands in a block `pigment`, or behind the place in an entry of a map.
+void read_pigment(Context& context, Arguments& arguments, Pigment& pigment);
+
+/// The mean colour of the whole pigment, with what passes through.
+PovColor mean_of(const Pigment& pigment);
+/// Whether light passes anywhere.
+bool is_transparent(const Pigment& pigment);
+/// Whether it has one colour.
+bool is_solid(const Pigment& pigment);
+
+/// What of a colour with what passes through is asked for.
+using ColorPart = std::function<Vec3d(const PovColor&)>;
+
+/// The colours of a pigment as a value of scene files: a colour, or a texture.
+Node pigment_node(Context& context, const Place& where, const Pigment& pigment, const ColorPart& part);
+
+/// A colour as a value of scene files.
+Node color_node(Tree& tree, const Place& where, const Vec3d& rgb);
+
+}  // namespace oktett::pov

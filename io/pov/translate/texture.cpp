@@ -1,0 +1,163 @@
+#include "io/pov/translate/texture.h"
+
+#include <algorithm>
+
+namespace oktett::pov {
+
+void Look::move(const Moves& moves) {
+  if (moves.empty()) return;
+  if (!layers.empty()) {
+    for (Look& layer : layers) layer.move(moves);
+  } else if (!entries.empty()) {
+    pattern.move(moves);
+  } else {
+    pigment.pattern.move(moves), normal.pattern.move(moves);
+  }
+}
+
+namespace {
+
+/// Reads textures.
+class TextureReader {
+ public:
+  explicit TextureReader(Context& context)
+      : context_(context), patterns_(context, [this](const Block& block) { return brightness_of(block); }) {}
+
+  void read(const Block& block, Look& look) {
+    if (block.keyword == "pigment") return read_part(block, look);
+    if (block.keyword == "finish" || block.keyword == "normal") return read_part(block, look);
+    if (!block.name.empty() && look.name.empty()) look.name = block.name;
+    const Look base = look;
+    const std::size_t textures = count_textures(block);
+    if (textures > 1 && !has_pattern(block)) return read_layers(block, base, look);
+    Arguments a(context_, block);
+    // Patterns stand before what they show, and moves behind it.
+    PovPattern pattern;
+    std::vector<TextureEntry> entries;
+    while (!a.at_end()) {
+      if (const Block* const inner = a.peek_block(); inner != nullptr && is_part(*inner)) {
+        a.take();
+        if (inner->keyword == "texture" && pattern.is_list)
+          entries.push_back({0, nested(*inner, base)});
+        else if (inner->keyword == "texture_map")
+          read_map(*inner, base, entries);
+        else
+          read_part(*inner, look);
+        continue;
+      }
+      Moves moves;
+      if (pattern.is_none() && take_moves(context_, a, moves)) {
+        look.move(moves);
+      } else if (!patterns_.take(a, pattern)) {
+        a.take();
+      }
+    }
+    if (pattern.is_none() || entries.empty()) return;
+    if (!pattern.is_list) std::ranges::stable_sort(entries, {}, &TextureEntry::at);
+    look.pattern = std::move(pattern), look.entries = std::move(entries), look.layers.clear();
+  }
+
+ private:
+  static bool is_part(const Block& block) {
+    constexpr std::string_view kParts[] = {"texture", "material",    "pigment",     "finish",
+                                           "normal",  "texture_map", "material_map"};
+    return std::ranges::find(kParts, block.keyword) != std::end(kParts);
+  }
+
+  void read_part(const Block& block, Look& look) {
+    if (block.keyword == "texture" || block.keyword == "material") return read(block, look);
+    if (block.keyword == "material_map")
+      return context_.tell("material_map", block.where, "'material_map' has no meaning here");
+    // Parts of what is not plain change all of it.
+    for (Look& layer : look.layers) read_part(block, layer);
+    for (TextureEntry& entry : look.entries) read_part(block, entry.look);
+    if (!look.is_plain()) return;
+    if (block.keyword == "pigment") {
+      look.pigment = Pigment{};
+      read_pigment(context_, block, look.pigment);
+    } else if (block.keyword == "normal") {
+      look.normal = Normal{};
+      read_normal(context_, block, look.normal);
+    } else {
+      read_finish(context_, block, look.finish);
+    }
+  }
+
+  static std::size_t count_textures(const Block& block) {
+    return static_cast<std::size_t>(std::ranges::count_if(block.elements, [](const Element& e) {
+      const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+      return inner != nullptr && *inner != nullptr && (*inner)->keyword == "texture";
+    }));
+  }
+
+  bool has_pattern(const Block& block) {
+    Arguments a(context_, block);
+    PovPattern pattern;
+    while (!a.at_end())
+      if (const Block* const inner = a.peek_block(); inner != nullptr || !patterns_.take(a, pattern)) a.take();
+    return !pattern.is_none();
+  }
+
+  void read_layers(const Block& block, const Look& base, Look& look) {
+    std::vector<Look> layers;
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      Moves moves;
+      if (const Block* const inner = a.peek_block(); inner != nullptr && inner->keyword == "texture") {
+        a.take();
+        layers.push_back(nested(*inner, base));
+      } else if (take_moves(context_, a, moves)) {
+        for (Look& layer : layers) layer.move(moves);
+      } else if (inner != nullptr && is_part(*inner) && !layers.empty()) {
+        read_part(*inner, layers.back());
+        a.take();
+      } else {
+        a.take();
+      }
+    }
+    look.layers = std::move(layers), look.entries.clear();
+  }
+
+  Look nested(const Block& block, const Look& base) {
+    Look look = base;
+    look.name.clear();
+    read(block, look);
+    return look;
+  }
+
+  void read_map(const Block& map, const Look& base, std::vector<TextureEntry>& entries) {
+    Arguments a(context_, map);
+    while (!a.at_end()) {
+      const Block* const block = a.peek_block();
+      a.take();
+      if (block == nullptr) continue;
+      if (block->keyword != "[") {
+        read_map(*block, base, entries);  // one that was declared
+        continue;
+      }
+      Arguments e(context_, *block);
+      TextureEntry entry{e.number("a number"), base};
+      // The rest of the entry stands as in a block `texture`.
+      Block rest = *block;
+      rest.keyword = "texture", rest.elements.erase(rest.elements.begin());
+      read(rest, entry.look);
+      entries.push_back(std::move(entry));
+    }
+  }
+
+  Node brightness_of(const Block& block) {
+    Pigment p;
+    read_pigment(context_, block, p);
+    return is_solid(p) ? nullptr
+                       : pigment_node(context_, block.where, p, [](const PovColor& c) { return c.rgb; });
+  }
+
+  Context& context_;
+  PatternReader patterns_;
+};
+
+}  // namespace
+
+void read_look(Context& context, const Block& block, Look& look) { TextureReader(context).read(block, look); }
+
+}  // namespace oktett::pov

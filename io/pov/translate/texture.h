@@ -1,0 +1,47 @@
+#pragma once
+/// \file Textures of POV-Ray: pigment, normal and finish, in patterns and layers. Within io/ only.
+
+#include <string>
+#include <vector>
+
+#include "io/pov/translate/finish.h"
+#include "io/pov/translate/normal.h"
+#include "io/pov/translate/pigment.h"
+
+namespace oktett::pov {
+
+struct TextureEntry;
+
+/// What an object looks like.
+struct Look {
+  Pigment pigment;
+  Normal normal;
+  Finish finish;
+  std::string name;
+
+  /// Instead: textures in a pattern, or layers, the lowest first.
+  PovPattern pattern;
+  std::vector<TextureEntry> entries;
+  std::vector<Look> layers;
+
+  bool is_plain() const { return entries.empty() && layers.empty(); }
+  void move(const Moves& moves);
+};
+
+struct TextureEntry {
+  double at = 0;
+  Look look;
+};
+
+/// Reads a block `texture`, `pigment`, `normal` or `finish` on top of what is known of a look.
+void read_look(Context& context, const Block& block, Look& look);
+
+/// Calls f(plain look) for each that is shown somewhere.
+template <class F>
+void for_each_plain(const Look& look, F&& f) {
+  if (look.is_plain()) return f(look);
+  for (const Look& layer : look.layers) for_each_plain(layer, f);
+  for (const TextureEntry& entry : look.entries) for_each_plain(entry.look, f);
+}
+
+}  // namespace oktett::pov
