@@ -1,8 +1,11 @@
 #include "kernels/exact/outline.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "kernels/exact/ray_polynomial.h"
 
@@ -253,7 +256,39 @@ std::vector<OutlinePiece> outline_pieces(const PlaneOutline& p, OutlineCurve cur
   return pieces;
 }
 
-OutlineSet::OutlineSet(const std::vector<std::vector<OutlinePiece>>& outlines) {
+/// The control points of a piece in the direction whose first coordinates are less.
+static std::array<FlatPoint, 4> directed(const OutlinePiece& piece) {
+  std::array<FlatPoint, 4> forward, backward;
+  for (int k = 0; k < 4; ++k)
+    forward[k] = piece.p[std::min(k, piece.degree)], backward[k] = piece.p[std::max(piece.degree - k, 0)];
+  const auto less = [](const FlatPoint& a, const FlatPoint& b) { return a.x != b.x ? a.x < b.x : a.z < b.z; };
+  return std::lexicographical_compare(backward.begin(), backward.end(), forward.begin(), forward.end(), less)
+             ? backward
+             : forward;
+}
+
+/// Pieces without those that lie on each other two by two: between them is nothing, and beside them both
+/// sides are inside, or both outside.
+static std::vector<std::vector<OutlinePiece>> without_pairs(std::vector<std::vector<OutlinePiece>> outlines) {
+  using Key = std::array<double, 9>;
+  const auto key_of = [](const OutlinePiece& piece) {
+    Key key{static_cast<double>(piece.degree)};
+    const std::array<FlatPoint, 4> p = directed(piece);
+    for (std::size_t k = 0; k < 4; ++k) key[2 * k + 1] = p[k].x, key[2 * k + 2] = p[k].z;
+    return key;
+  };
+  std::map<Key, bool> odd;
+  for (const auto& pieces : outlines)
+    for (const OutlinePiece& piece : pieces) odd[key_of(piece)] = !odd[key_of(piece)];
+  // Of an odd number the first one stays.
+  for (auto& pieces : outlines)
+    std::erase_if(pieces,
+                  [&](const OutlinePiece& piece) { return !std::exchange(odd[key_of(piece)], false); });
+  return outlines;
+}
+
+OutlineSet::OutlineSet(const std::vector<std::vector<OutlinePiece>>& described) {
+  const std::vector<std::vector<OutlinePiece>> outlines = without_pairs(described);
   // Groups of outlines whose boxes meet. Joined boxes may meet others in turn.
   struct Joined {
     PlaneBox box;

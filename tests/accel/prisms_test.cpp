@@ -55,6 +55,40 @@ TEST(Prisms, AHoleIsWhereTwoOutlinesSurround) {
   EXPECT_TRUE(crossings(s, {1.5f, 3, 0}, {0, -1, 0}).empty());
 }
 
+/// What lies between edges that fall together is nothing, so it is not met.
+TEST(Prisms, EdgesThatLieOnEachOtherAreNotThere) {
+  const PlaneOutline with_hairs{{-1, -1}, {0.3, -1.1}, {0.4, -3}, {0.3, -1.1}, {1, -1},      {1, 1},
+                                {3, 1.7}, {1, 1},      {-1, 1},   {-1, 0.2},   {0.5, 0.125}, {-1, 0.2}};
+  const PlaneOutline plain{{-1, -1}, {0.3, -1.1}, {1, -1}, {1, 1}, {-1, 1}, {-1, 0.2}};
+  for (const Sweep sweep : {Sweep::linear, Sweep::conic}) {
+    PrismShape hairy, bare;
+    hairy.outlines = {with_hairs}, bare.outlines = {plain};
+    for (PrismShape* s : {&hairy, &bare}) s->sweep = sweep, s->from = 0.5, s->to = 2;
+    std::size_t met = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double a = 0.1 * i;
+      const Vec3f from{static_cast<float>(5 * std::cos(a)), static_cast<float>(3 * std::sin(1.7 * a)),
+                       static_cast<float>(5 * std::sin(a))};
+      const Vec3f to{static_cast<float>(std::sin(2.3 * a)), 1.25f,
+                     static_cast<float>(1.5 * std::cos(3.1 * a))};
+      const std::vector<Hit> a_hits = crossings(hairy, from, to - from),
+                             b_hits = crossings(bare, from, to - from);
+      ASSERT_EQ(a_hits.size(), b_hits.size()) << i;
+      for (std::size_t k = 0; k < a_hits.size(); ++k) EXPECT_EQ(a_hits[k].t, b_hits[k].t) << i;
+      met += a_hits.size();
+    }
+    EXPECT_GT(met, 500u);
+  }
+}
+
+/// An edge that two outlines share lies within the solid.
+TEST(Prisms, OutlinesSideBySideAreOne) {
+  PrismShape s;
+  s.outlines = {{{-1, -1}, {0, -1}, {0, 1}, {-1, 1}}, {{0, -1}, {1, -1}, {1, 1}, {0, 1}}};
+  expect_at(crossings(s, {-5, 0.5f, 0.25f}, {1, 0, 0}), {4, 6});
+  expect_at(crossings(s, {0.25f, 3, 0}, {0, -1, 0}), {2, 3});
+}
+
 /// Points measured with another ray tracer, whose splines these are, and by their formulas.
 TEST(Prisms, CurvesGoThroughTheirPoints) {
   PrismShape s;

@@ -221,6 +221,96 @@ TEST(PovScene, LooksBecomeMaterials) {
             "1, 0]}}}, ambient: 0.1, diffuse: 0.6}}");
 }
 
+TEST(PovScene, PatternsAreTextures) {
+  const PovFiles files;
+  const auto color = [&](const std::string& pigment) {
+    const std::string text =
+        files.section("#version 3.7;\nsphere { 0, 1 pigment { " + pigment + " } }", "materials");
+    const std::string begin = "{material: {color: ", end = ", ambient: 0.1, diffuse: 0.6}}";
+    return text.starts_with(begin) && text.ends_with(end)
+               ? text.substr(begin.size(), text.size() - begin.size() - end.size())
+               : text;
+  };
+  EXPECT_EQ(
+      color("gradient y color_map { [0 rgb 0] [0.5 rgb x] [1 rgb 1] } scale 2"),
+      "{linear: {direction: [0, 1, 0], map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], transform: "
+      "{scale: 2}}}");
+  EXPECT_EQ(color("bozo"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(
+      color("marble turbulence 0.5 octaves 3 color_map { [0, 0.5 rgb 0 rgb x] [0.5, 1 rgb x rgb 1] }"),
+      "{layers: {map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], turbulence: "
+      "{amount: 0.5, octaves: 3}}}");
+  // Transforms before a warp are nearer to the pattern.
+  EXPECT_EQ(
+      color("onion scale 2 warp { repeat 3*x flip x } rotate y*30 frequency 2 phase 0.25 sine_wave"),
+      "{onion: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], wave: sine, frequency: 2, phase: 0.25, warps: "
+      "[{transform: {scale: 2}}, {repeat: {width: [3, 0, 0], flip: [1, 0, 0]}}], transform: {rotate: [0, 30, "
+      "0]}}}");
+  EXPECT_EQ(color("brick rgb 0, rgb 1 brick_size <4, 1, 2> mortar 0.1"),
+            "{brick: {brick: [4, 1, 2], mortar: 0.1, colors: [[0, 0, 0], [1, 1, 1]]}}");
+  EXPECT_EQ(color("hexagon rgb 1"), "{hexagon: {colors: [[1, 1, 1], [0, 1, 0], [1, 0, 0]]}}");
+  EXPECT_EQ(color("checker pigment { radial color_map { [0 rgb 0] [1 rgb x] } } rgb 1"),
+            "{checker: {colors: [{angular: {map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}, [1, 1, 1]]}}");
+  EXPECT_EQ(
+      color("planar pigment_map { [0 rgb 0] [1 granite scale 3] }"),
+      "{planar: {map: [[0, [0, 0, 0]], [1, {granite: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], transform: "
+      "{scale: 3}}}]]}}");
+  EXPECT_EQ(color("average pigment_map { [1 rgb 1] [3 rgb x] }"),
+            "{over: {color: [0.75, 0, 0], filter: 1, under: {over: {color: [0.25, 0.25, 0.25], filter: 1, "
+            "under: [0, "
+            "0, 0]}}}}");
+  EXPECT_EQ(
+      color("julia <0.25, -0.5>, 20 exponent 3 interior 1, 2"),
+      "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
+      "interior_factor: 2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  // Places outside of 0 to 1 show what lies between them.
+  EXPECT_EQ(color("boxed color_map { [-1 rgb 0] [1 rgb 1] }"),
+            "{boxed: {map: [[0, [0.5, 0.5, 0.5]], [1, [1, 1, 1]]]}}");
+}
+
+TEST(PovScene, TexturesInPatternsAndLayers) {
+  const PovFiles files;
+  const auto material = [&](const std::string& texture) {
+    return files.section("#version 3.7;\nsphere { 0, 1 " + texture + " }", "materials");
+  };
+  // What differs is in the pattern, what does not is not.
+  EXPECT_EQ(
+      material("texture { gradient x texture_map { [0 pigment { rgb 0 } finish { diffuse 0.5 }] [1 pigment { "
+               "rgb x } finish { diffuse 1 }] } scale 2 }"),
+      "{material: {color: {linear: {direction: [1, 0, 0], map: [[0, [0, 0, 0]], [1, [1, 0, 0]]], transform: "
+      "{scale: 2}}}, ambient: 0.1, diffuse: {linear: {direction: [1, 0, 0], map: [[0, 0.5], [1, 1]], "
+      "transform: "
+      "{scale: 2}}}}}");
+  // A layer that lets half pass, over another.
+  EXPECT_EQ(
+      material("texture { pigment { rgb 1 } } texture { pigment { rgbt <1, 0, 0, 0.5> } }"),
+      "{material: {color: {over: {color: [0.5, 0, 0], filter: [0.5, 0.5, 0.5], under: [1, 1, 1]}}, ambient: "
+      "0.1, diffuse: 0.6, transparency: 1, filter: {over: {color: [0, 0, 0], filter: [0.5, 0.5, 0.5], under: "
+      "[0, 0, 0]}}, ior: 1}}");
+  // What passes differs in a pattern.
+  EXPECT_EQ(
+      material("pigment { onion color_map { [0 rgb 1] [1 rgbf 1] } }"),
+      "{material: {color: {onion: {map: [[0, [1, 1, 1]], [1, [0, 0, 0]]]}}, ambient: 0.1, diffuse: 0.6, "
+      "transparency: 1, filter: {onion: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, ior: 1}}");
+  // A normal: 2/15 of the slope of the pattern, in the size of the pattern.
+  EXPECT_EQ(
+      material("pigment { rgb 1 } normal { gradient x 0.75 scale 2 }"),
+      "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {linear: {direction: [1, 0, 0], "
+      "transform: {scale: 2}}, gain: 0.2}}}");
+  EXPECT_EQ(
+      material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
+      "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: {scale: 3}}}, ambient: 0.1, "
+      "diffuse: 0.6}}");
+}
+
+TEST(PovScene, SkiesArePatternsOfDirections) {
+  const PovFiles files;
+  EXPECT_EQ(
+      files.section("#version 3.7;\nsky_sphere { pigment { gradient y color_map { [0 rgb 1] [1 rgb z] } } }",
+                    "background"),
+      "{linear: {direction: [0, 1, 0], map: [[0, [1, 1, 1]], [1, [0, 0, 1]]]}}");
+}
+
 TEST(PovScene, CamerasAreFrames) {
   const PovFiles files;
   EXPECT_EQ(
@@ -252,11 +342,12 @@ TEST(PovScene, LightsAndSurroundings) {
 
 TEST(PovScene, WhatCannotBeMeantIsToldOnce) {
   const PovFiles files;
-  EXPECT_EQ(
-      files.warnings("#version 3.7;\nsphere { 0, 1 normal { bumps 1 } }\nsphere { x, 1 normal { bumps 1 } }\n"
-                     "intersection { box { -1, 1 } triangle { 0, x, y } }\n"),
-      "scene.pov:2:15: warning: 'normal' has no meaning here: surfaces are smooth\n"
-      "scene.pov:4:30: warning: 'triangle' has no inside here, and is left out of the combination\n");
+  EXPECT_EQ(files.warnings(
+                "#version 3.7;\nsphere { 0, 1 normal { facets coords 1 } }\nsphere { x, 1 normal { facets "
+                "coords 1 } }\n"
+                "intersection { box { -1, 1 } triangle { 0, x, y } }\n"),
+            "scene.pov:2:24: warning: 'facets' in 'normal' has no meaning here: surfaces are smooth\n"
+            "scene.pov:4:30: warning: 'triangle' has no inside here, and is left out of the combination\n");
 }
 
 TEST(PovScene, ErrorsHaveTheirPlace) {

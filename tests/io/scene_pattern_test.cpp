@@ -39,6 +39,8 @@ TEST_F(ScenePattern, EachKindIsRead) {
     std::string keys;
     if constexpr (std::is_same_v<P, FunctionPattern>) keys = "f: x";
     if constexpr (std::is_same_v<P, TexturePattern>) keys = "of: {noise: }";
+    if constexpr (std::is_same_v<P, ProjectedPattern>) keys = "of: {file: a.png}";
+    if constexpr (std::is_same_v<P, OverPattern>) keys = "color: 0.25, filter: [0, 0.5, 1], under: {noise: }";
     const PatternTexture read = pattern(std::string(P::kShapeInfo.key) + ": {" + keys + "}");
     EXPECT_TRUE(std::holds_alternative<P>(read.pattern)) << P::kShapeInfo.key;
     if (keys.empty()) {
@@ -48,6 +50,21 @@ TEST_F(ScenePattern, EachKindIsRead) {
     ++kinds;
   });
   EXPECT_EQ(kinds, std::variant_size_v<Pattern>);
+}
+
+TEST_F(ScenePattern, PatternsWithoutValuesAreRead) {
+  const PatternTexture over = pattern("over: {color: 0.25, filter: [0, 0.5, 1], under: {noise: }}");
+  const auto& o = std::get<OverPattern>(over.pattern);
+  EXPECT_EQ(o.color, (PatternColor{{0.25f, 0.25f, 0.25f}, {}}));
+  EXPECT_EQ(o.filter, (PatternColor{{0, 0.5f, 1}, {}}));
+  ASSERT_LT(o.under.texture.index, scene.textures.size());
+  const PatternTexture image =
+      pattern("projected: {of: {file: a.png}, onto: spherical, transform: {scale: 2}}");
+  EXPECT_EQ(std::get<ProjectedPattern>(image.pattern).projection, ProjectedPattern::Projection::spherical);
+  expect("over: {color: 1, filter: 1}", "under");
+  expect("over: {color: 1, filter: 1, under: 0, map: [[0, 1]]}", "map");
+  expect("projected: {}", "of");
+  expect("projected: {of: {file: a.png}, wave: sine}", "wave");
 }
 
 TEST_F(ScenePattern, MapsAreRead) {

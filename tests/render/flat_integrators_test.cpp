@@ -56,6 +56,38 @@ TEST(FlatIntegrators, AlbedoUvAndPosition) {
   }
 }
 
+/// It is seen by the direction, directly and in mirrors, also beside an environment that is black.
+TEST(FlatIntegrators, ABackgroundMayBeAPattern) {
+  Scene scene = bare_scene(8);
+  scene.camera.from = {0, 0, 5}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 90;
+  Texture texture;
+  texture.pattern.emplace();
+  texture.pattern->pattern = GradientPattern{{-1, 0, 0}, {1, 0, 0}};
+  scene.textures = {texture};
+  scene.background = {1, 1, 0.5f}, scene.background_texture = 0;
+  for (const IntegratorKind kind : {IntegratorKind::albedo, IntegratorKind::whitted, IntegratorKind::path}) {
+    scene.integrator.kind = kind;
+    const Picture picture = run(scene).picture;
+    for (std::uint32_t x = 0; x < 8; ++x) {
+      // The middle of the pixel, but for path tracing, which takes a place in it.
+      const double slack = kind == IntegratorKind::path ? 0.07 : 1e-6;
+      const double right = (x + 0.5) / 4 - 1, down = 3.5 / 4 - 1;
+      const double expected = 0.5 + 0.5 * right / std::sqrt(right * right + down * down + 1);
+      EXPECT_NEAR(value(picture, "R", x, 3), expected, slack) << static_cast<int>(kind) << " " << x;
+      EXPECT_NEAR(value(picture, "B", x, 3), expected / 2, slack);
+    }
+  }
+  // A mirror in the plane x = 0 shows the same on both sides of it.
+  scene.integrator.kind = IntegratorKind::whitted;
+  Material mirror = diffuse({0, 0, 0});
+  mirror.reflection = 1;
+  add_object(scene, PlaneShape{{1, 0, 0}, 0}, add_material(scene, mirror));
+  scene.camera.from = {1, 0, 5}, scene.camera.at = {1, 0, 0};
+  const Picture picture = run(scene).picture;
+  for (std::uint32_t x = 0; x < 3; ++x)
+    EXPECT_NEAR(value(picture, "R", x, 3), value(picture, "R", 7 - x, 3), 1e-6) << x;
+}
+
 TEST(FlatIntegrators, ObjectsAndPrimitivesHaveColoursOfTheirOwn) {
   Scene scene = flat_scene(IntegratorKind::object);
   add_object(scene, SphereShape{{0, 0, 0}, 1}, 0);

@@ -376,16 +376,35 @@ TEST(PatternKinds, FunctionsRepeatAndAreZeroWhereTheyAreNotDefined) {
 // All values lie in [0, 1], whatever the place.
 TEST(PatternKinds, ValuesAreInRange) {
   Random random(6);
-  const Pattern all[] = {
-      AgatePattern{},        AngularPattern{},     BoxedPattern{},
-      BrickPattern{},        CellsPattern{},       CracklePattern{},
-      CubicPattern{},        CylindricalPattern{}, DentsPattern{},
-      DoubleSpiralPattern{}, FractalPattern{},     GranitePattern{},
-      HexagonPattern{},      LayersPattern{},      LeopardPattern{},
-      LinearPattern{},       OnionPattern{},       PlanarPattern{},
-      QuiltedPattern{},      RingsPattern{},       RipplesPattern{},
-      SphericalPattern{},    SpiralPattern{},      WavesPattern{},
-      WrinklesPattern{},     TexturePattern{},     FractalPattern{Set::mandel, Formula::magnet2}};
+  const Pattern all[] = {AgatePattern{},
+                         AngularPattern{},
+                         BoxedPattern{},
+                         BrickPattern{},
+                         CellsPattern{},
+                         CracklePattern{},
+                         CubicPattern{},
+                         CylindricalPattern{},
+                         DentsPattern{},
+                         DoubleSpiralPattern{},
+                         FractalPattern{},
+                         GranitePattern{},
+                         HexagonPattern{},
+                         LayersPattern{},
+                         LeopardPattern{},
+                         LinearPattern{},
+                         OnionPattern{},
+                         PlanarPattern{},
+                         QuiltedPattern{},
+                         RingsPattern{},
+                         RipplesPattern{},
+                         SphericalPattern{},
+                         SpiralPattern{},
+                         WavesPattern{},
+                         WrinklesPattern{},
+                         TexturePattern{},
+                         OverPattern{},
+                         ProjectedPattern{},
+                         FractalPattern{Set::mandel, Formula::magnet2}};
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pattern& pattern : all) {
     for (const double reach : {1.0, 100.0, 1e9, 1e300})

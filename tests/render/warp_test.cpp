@@ -239,6 +239,9 @@ class Places final : public PatternTextures {
   Color color(std::uint32_t texture, const Vec3d& position) const override {
     return Color(position) + Color{static_cast<float>(texture), 0, 0};
   }
+  Color image(std::uint32_t texture, const Vec2f& uv) const override {
+    return {uv.x, uv.y, static_cast<float>(texture)};
+  }
 };
 
 // A texture in a map sees the place with all warps and the turbulence of what is around it, but for the
@@ -269,6 +272,7 @@ TEST(Maps, BrightnessIsThatOfVideo) {
     Color color(std::uint32_t texture, const Vec3d&) const override {
       return {texture == 0 ? 1.0f : 0.0f, texture == 1 ? 1.0f : 0.0f, texture == 2 ? 1.0f : 0.0f};
     }
+    Color image(std::uint32_t, const Vec2f&) const override { return {0, 0, 0}; }
   };
   const Primaries primaries;
   const double expected[] = {0.297, 0.589, 0.114};
@@ -277,6 +281,47 @@ TEST(Maps, BrightnessIsThatOfVideo) {
     texture.pattern = TexturePattern{{i}};
     EXPECT_NEAR(double{pattern_color(texture, {0, 0, 0}, &primaries).x}, expected[i], 1e-6);
   }
+}
+
+// ---- Patterns that have colours in place of values.
+
+TEST(Maps, WhatIsSeenThroughOthersIsFiltered) {
+  PatternTexture texture;
+  texture.pattern = OverPattern{{{0.5f, 0, 0.25f}, {}}, {{0.5f, 1, 0}, {}}, {{}, {2}}};
+  texture.to_pattern = Affine::scaling({2, 2, 2});
+  const Places places;
+  const Vec3d p{0.5, 0.25, 3};
+  EXPECT_EQ(pattern_color(texture, p, &places), (Color{0.5f + 0.5f * 3, 0.5f, 0.25f}));
+  EXPECT_EQ(pattern_color(texture, p), (Color{0.5f, 0, 0.25f})) << "other textures are black";
+  texture.pattern = OverPattern{{{}, {1}}, {{1, 1, 1}, {}}, {{}, {2}}};
+  EXPECT_EQ(pattern_color(texture, p, &places), (Color{1 + 1 + 2 + 1, 1, 12}));
+  // The height is the red part: of both together 2 x + 3 where x is in the pattern.
+  const Vec3d slope = pattern_slope(texture, p, &places);
+  EXPECT_NEAR(slope.x, 4, 1e-3);
+  EXPECT_NEAR(slope.y, 0, 1e-3);
+}
+
+TEST(Maps, ImagesLieWhereTheirProjectionSays) {
+  using enum ProjectedPattern::Projection;
+  const Places places;
+  PatternTexture texture;
+  const auto expect_uv = [&](ProjectedPattern::Projection onto, const Vec3d& p, double u, double v) {
+    texture.pattern = ProjectedPattern{{7}, onto};
+    const Color c = pattern_color(texture, p, &places);
+    EXPECT_NEAR(double{c.x}, u, 1e-6);
+    EXPECT_NEAR(double{c.y}, v, 1e-6);
+    EXPECT_EQ(c.z, 7);
+  };
+  expect_uv(planar, {0.25, -3.5, 9}, 0.25, -3.5);
+  const double turn = 0.3, height = 0.2 * std::numbers::pi;
+  const Vec3d across{std::cos(2 * std::numbers::pi * turn), 0, std::sin(2 * std::numbers::pi * turn)};
+  expect_uv(cylindrical, across * 5 + Vec3d{0, 0.75, 0}, turn, 0.75);
+  expect_uv(spherical, (across * std::cos(height) + Vec3d{0, std::sin(height), 0}) * 3, turn, 0.7);
+  const double around = 0.4 * std::numbers::pi;
+  expect_uv(toroidal, across * (1 + 0.25 * std::cos(around)) + Vec3d{0, 0.25 * std::sin(around), 0}, turn,
+            0.2);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(pattern_color(texture, {nan, 0, 0}, &places), (Color{0, 0, 0}));
 }
 
 // ---- Slopes.

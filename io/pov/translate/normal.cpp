@@ -16,8 +16,8 @@ struct Strength {
 };
 /// The patterns that POV-Ray bends surfaces by in ways of their own. As measured with 3.7.0.10: the height at
 /// which our patterns tilt a plane as much in the mean square.
-constexpr Strength kOwnStrengths[] = {{"bumps", 1},  {"dents", 1},    {"ripples", 1},
-                                      {"waves", 1},  {"wrinkles", 1}, {"quilted", 1}};
+constexpr Strength kOwnStrengths[] = {{"bumps", 1}, {"dents", 1},    {"ripples", 1},
+                                      {"waves", 1}, {"wrinkles", 1}, {"quilted", 1}};
 /// Of all others it takes differences of values: the normal leans by 2/15 of the slope of the pattern.
 constexpr double kStrength = 2.0 / 15;
 

@@ -27,8 +27,8 @@ struct Normal {
 /// Reads a normal on top of what is known of it.
 void read_normal(Context& context, const Block& block, Normal& normal);
 
-/// Its heights as a texture for `map_bump`; null if it bends nothing, or, after a warning, if scene files have
-/// no such pattern.
+/// Its heights as a texture for `map_bump`; null if it bends nothing, or, after a warning, if scene files
+/// have no such pattern.
 Node normal_node(Context& context, const Normal& normal);
 
 }  // namespace oktett::pov

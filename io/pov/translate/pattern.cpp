@@ -237,10 +237,10 @@ bool PatternReader::take_later_key(Arguments& a, PovPattern& p) {
   } else if (p.key == "fractal" && a.take_word("exponent")) {
     put(p, "power", std::clamp(std::trunc(a.number("a number")), 2.0, 33.0));
   } else if (p.key == "fractal" && (a.peek_word() == "interior" || a.peek_word() == "exterior")) {
-    constexpr std::string_view kOutside[] = {"constant",  "steps",       "real",
-                                             "imaginary", "real_square", "imaginary_square", "size"};
-    constexpr std::string_view kInside[] = {"constant",  "least_size",  "real",
-                                            "imaginary", "real_square", "imaginary_square", "square"};
+    constexpr std::string_view kOutside[] = {"constant",         "steps", "real", "imaginary", "real_square",
+                                             "imaginary_square", "size"};
+    constexpr std::string_view kInside[] = {"constant",    "least_size",       "real",  "imaginary",
+                                            "real_square", "imaginary_square", "square"};
     const bool inside = a.peek_word() == "interior";
     a.take();
     const auto kind = static_cast<std::size_t>(std::clamp(a.number("a kind"), 0.0, 100.0));
@@ -427,7 +427,8 @@ Node pattern_node(Context& context, const PovPattern& p, Node values) {
     const Node warps = tree.list(where);
     for (std::size_t i = 0; i < count; ++i) {
       if (const auto* const moves = std::get_if<Moves>(&p.modifiers[i])) {
-        if (const Node node = moves_node(tree, where, *moves)) Tree::push(warps, tree.map(where, "transform", node));
+        if (const Node node = moves_node(tree, where, *moves))
+          Tree::push(warps, tree.map(where, "transform", node));
       } else {
         Tree::push(warps, std::get<Node>(p.modifiers[i]));
       }

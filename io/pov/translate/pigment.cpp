@@ -134,8 +134,9 @@ class PigmentReader {
     --depth_;
     if (is_solid(*inner)) return {0, inner->solid, nullptr};
     if (depth_ < kMostNested) return {0, {}, std::move(inner)};
-    context_.tell("nested pigments", block.where,
-                  fmt::format("pigments within each other deeper than {} levels show their mean colour", kMostNested));
+    context_.tell(
+        "nested pigments", block.where,
+        fmt::format("pigments within each other deeper than {} levels show their mean colour", kMostNested));
     return {0, mean_of(*inner), nullptr};
   }
 
@@ -180,8 +181,7 @@ class PigmentReader {
   }
   static bool is_color_word(std::string_view word) { return word == "color" || word == "colour"; }
   void take_color_words(Arguments& a) {
-    while (a.take_word("color") || a.take_word("colour")) {
-    }
+    while (a.take_word("color") || a.take_word("colour")) {}
   }
 
   Node texture_of(const Block& block) {
@@ -260,7 +260,8 @@ Node average_node(Context& context, const Place& where, const Pigment& p, const 
 }
 
 Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
-  const PovColor white{{1, 1, 1}, p.filter_all, p.transmit_all}, black{{0, 0, 0}, p.filter_all, p.transmit_all};
+  const PovColor white{{1, 1, 1}, p.filter_all, p.transmit_all},
+      black{{0, 0, 0}, p.filter_all, p.transmit_all};
   const double base = part(black).x, gain = part(white).x - base;
   const Node node = pattern_node(context, p.pattern, nullptr);
   if (gain == 1 && base == 0) return node;

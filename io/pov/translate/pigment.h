@@ -23,9 +23,9 @@ struct PigmentEntry {
 /// What blocks `pigment` say, one after the other.
 struct Pigment {
   PovColor solid;
-  PovPattern pattern;                 ///< none: one colour
-  std::vector<PigmentEntry> entries;  ///< of a map, by ascending places, or of a list
-  bool is_average = false;            ///< the mean of the entries, whose `at` are weights
+  PovPattern pattern;                       ///< none: one colour
+  std::vector<PigmentEntry> entries;        ///< of a map, by ascending places, or of a list
+  bool is_average = false;                  ///< the mean of the entries, whose `at` are weights
   double filter_all = 0, transmit_all = 0;  ///< of an image
   std::string name;
 };

@@ -94,7 +94,8 @@ class TextureReader {
     Arguments a(context_, block);
     PovPattern pattern;
     while (!a.at_end())
-      if (const Block* const inner = a.peek_block(); inner != nullptr || !patterns_.take(a, pattern)) a.take();
+      if (const Block* const inner = a.peek_block(); inner != nullptr || !patterns_.take(a, pattern))
+        a.take();
     return !pattern.is_none();
   }
 
