@@ -148,6 +148,7 @@ struct PatternTexture {
   std::vector<PatternEntry> map{};
   Wave wave{};
   PatternTurbulence turbulence{};  ///< nearest to the pattern
+  bool by_uv = false;  ///< places are [u, v, 0] of the surface in place of those in the object's space
   std::vector<Warp>
       warps{};  ///< between the turbulence and the transform; the first is nearest to the pattern
   bool operator==(const PatternTexture&) const = default;

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 
-#include "core/color.h"
 #include "core/description.h"
 #include "core/vec3.h"
 #include "kernels/functions/tape_data.h"

@@ -97,8 +97,8 @@ static Color texture_color(const Textures& textures, std::uint32_t texture, cons
   if (const PatternTexture* pattern = pattern_in(textures.list, texture)) {
     const Texture& t = textures.list[texture];
     const NestedTextures nested(textures, place, depth + 1);
-    return valid_color(pattern_color(*pattern, place.position, &nested) * t.gain +
-                       Color{t.base, t.base, t.base});
+    const Vec3d position = pattern->by_uv ? Vec3d{place.uv.x, place.uv.y, 0} : place.position;
+    return valid_color(pattern_color(*pattern, position, &nested) * t.gain + Color{t.base, t.base, t.base});
   }
   if (const Texture* t = attribute_in(textures.list, texture)) {
     const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
@@ -297,11 +297,16 @@ Vec3f unit_normal(const Vec3f& bent, const Vec3f& n) {
 Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const UvPlace& place) {
   const Vec3f across = cross(s.tangent, s.bitangent);
-  if (c.textures == nullptr || !(dot(across, across) > 0)) return n;
+  const PatternTexture* const pattern = pattern_in(c.texture_list, m.bump_texture);
+  if ((c.textures == nullptr && pattern == nullptr) || !(dot(across, across) > 0)) return n;
   const auto step = [](float x, float y) { return std::max(0.5f * (std::abs(x) + std::abs(y)), 0x1p-11f); };
   const float du = step(place.dx.x, place.dy.x), dv = step(place.dx.y, place.dy.y);
   const auto height = [&](float u, float v) {
-    return m.bump_scale * c.textures->value(m.bump_texture, {s.uv.x + u, s.uv.y + v}, place.dx, place.dy);
+    const Vec2f uv{s.uv.x + u, s.uv.y + v};
+    if (pattern == nullptr) return m.bump_scale * c.textures->value(m.bump_texture, uv, place.dx, place.dy);
+    TexturePlace there;
+    there.uv = uv;
+    return m.bump_scale * texture_color(c, m.bump_texture, there).x;
   };
   const float here = height(0, 0), by_u = (height(du, 0) - here) / du, by_v = (height(0, dv) - here) / dv;
   // cross(dp/du + by_u n, dp/dv + by_v n) without the square of n, on the side of n.
@@ -459,7 +464,8 @@ class TexturedHit {
 
   Vec3f shading_normal() const {
     Vec3f n = s_.shading_normal;
-    if (const PatternTexture* pattern = pattern_in(context_.texture_list, m_.bump_texture)) {
+    const PatternTexture* const pattern = pattern_in(context_.texture_list, m_.bump_texture);
+    if (pattern != nullptr && !pattern->by_uv) {
       const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
       const Textures textures{context_.texture_list, context_.textures};
       const NestedTextures nested(textures, place, 1);

@@ -288,6 +288,7 @@ struct PatternKeys {
                "between turbulence and transform, the first nearest to the pattern");
     p.optional("transform", InverseOf{texture.to_pattern},
                "from the space of the pattern to that of the object");
+    p.field("by_uv", texture.by_uv, "is looked up at [u, v, 0] of the surface instead of the place in space");
   }
 
  private:

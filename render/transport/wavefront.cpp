@@ -351,6 +351,12 @@ class HitShader {
         record_first_hit(context_, wavefront_, i, shown_surface(p));
         cover(context_, wavefront_, i, p.opacity);
       }
+      if (p.opacity == 0) {
+        // There is no surface here.
+        push_bounce(wavefront_, wavefront_.next, i, p, wavefront_.rays.rays[i].direction,
+                    wavefront_.rays.throughput[i], Bounce::straight);
+        continue;
+      }
       integrator_.shade(context_, wavefront_, i, p);
     }
   }

@@ -71,10 +71,10 @@ class MaterialWriter {
     const bool transparent = is_transparent(look);
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
     tree_.put(map, "color", color(look));
-    put(map, "ambient", number(look, [](const Look& l) { return ambient_of(l.finish); }), "");
+    put(map, "ambient", weight(look, ambient_of), "");
     if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
-    put(map, "diffuse", number(look, [](const Look& l) { return l.finish.diffuse; }), "");
+    put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }), "");
     put_highlight(map, look);
     put_reflection(map, look, interior);
     if (transparent) {
@@ -90,10 +90,10 @@ class MaterialWriter {
     return map;
   }
 
-  /// The colours of a look less what passes through.
+  /// The colours of a look; of layers less what passes through.
   Node color(const Look& look) {
-    return colors(
-        look, [](const PovColor& c) { return c.rgb * left_of(c); }, true);
+    if (!has_layers(look)) return colors(look, {[](const PovColor& c) { return c.rgb; }}, true);
+    return colors(look, {[](const PovColor& c) { return c.rgb * left_of(c); }}, true);
   }
 
  private:
@@ -101,6 +101,12 @@ class MaterialWriter {
 
   static double ambient_of(const Finish& f) { return is_grey(f.ambient) ? std::max(0.0, f.ambient.x) : 0; }
   static Vec3d glow_of(const Finish& f) { return is_grey(f.ambient) ? f.emission : f.emission + f.ambient; }
+
+  static bool has_layers(const Look& look) {
+    return !look.layers.empty() || std::ranges::any_of(look.entries, [](const TextureEntry& entry) {
+      return has_layers(entry.look);
+    });
+  }
 
   template <class Asked>
   static bool any(const Look& look, Asked&& asked) {
@@ -129,7 +135,7 @@ class MaterialWriter {
                flow_text(*values.back()) != flow_text(*values[0]);
     }
     if (!differ) return values[0];
-    if (pattern.key.empty() || pattern.key == "projected" || pattern.uses_uv) {
+    if (pattern.key.empty() || pattern.key == "projected") {
       context_.tell(fmt::format("texture pattern {}", pattern.word), pattern.where,
                     fmt::format("of the textures in a pattern '{}' the first is shown", pattern.word));
       return values[0];
@@ -183,7 +189,7 @@ class MaterialWriter {
         const Node keys = tree_.map(where_);
         tree_.put(keys, "color",
                   is_sum ? colors(l.layers[i], part, true) : color_node(tree_, where_, {0, 0, 0}));
-        tree_.put(keys, "filter", colors(l.layers[i], through_of, false));
+        tree_.put(keys, "filter", colors(l.layers[i], {through_of}, false));
         tree_.put(keys, "under", below);
         below = tree_.map(where_, "over", keys);
       }
@@ -192,13 +198,25 @@ class MaterialWriter {
     return in_pattern(look, plain, layers);
   }
 
-  Node filter(const Look& look) { return colors(look, through_of, false); }
+  /// A weight of the light that a surface scatters: of its colour, as far as no light passes. Colours of
+  /// layers are less that part already.
+  Node weight(const Look& look, const std::function<double(const Finish&)>& of) {
+    if (has_layers(look)) return number(look, [&](const Look& l) { return of(l.finish); });
+    return of_shown_layer(look, [&](const Look& l) {
+      const double all = of(l.finish);
+      if (!is_transparent(l.pigment)) return tree_.number(where_, all);
+      const auto left = [&](const PovColor& c) { return Vec3d{1, 1, 1} * (all * left_of(c)); };
+      return pigment_node(context_, where_, l.pigment, {left, true});
+    });
+  }
+
+  Node filter(const Look& look) { return colors(look, {through_of}, false); }
 
   Node glow(const Look& look) {
     const PlainNode plain = [&](const Look& l) {
       const Vec3d factor = glow_of(l.finish);
       return pigment_node(context_, where_, l.pigment,
-                          [&](const PovColor& c) { return factor * c.rgb * left_of(c); });
+                          {[&](const PovColor& c) { return factor * c.rgb * left_of(c); }});
     };
     return of_shown_layer(look, plain);
   }
@@ -253,7 +271,7 @@ class MaterialWriter {
     if (any(look, [](const Finish& f) { return f.metallic > 0; }))
       tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
                   return pigment_node(context_, where_, l.pigment,
-                                      [&](const PovColor& c) { return tint(l.finish.metallic, c.rgb); });
+                                      {[&](const PovColor& c) { return tint(l.finish.metallic, c.rgb); }});
                 }));
   }
 
@@ -291,7 +309,7 @@ class MaterialWriter {
     if (!colored) return;
     tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
                 return pigment_node(context_, where_, l.pigment,
-                                    [&](const PovColor& c) { return hue(l, c.rgb); });
+                                    {[&](const PovColor& c) { return hue(l, c.rgb); }});
               }));
     if (highlights)
       context_.tell("coloured reflection", where_, "highlights have the colour of the reflection");

@@ -436,6 +436,7 @@ Node pattern_node(Context& context, const PovPattern& p, Node values) {
     tree.put(keys, "warps", warps);
   }
   if (transform != nullptr) tree.put(keys, "transform", transform);
+  if (p.uses_uv) tree.put(keys, "by_uv", tree.flag(where, true));
   return tree.map(where, p.key, keys);
 }
 

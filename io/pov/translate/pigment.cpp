@@ -190,7 +190,7 @@ class PigmentReader {
     read(block, p);
     --depth_;
     if (is_solid(p) || depth_ >= kMostNested) return nullptr;
-    return pigment_node(context_, block.where, p, [](const PovColor& c) { return c.rgb; });
+    return pigment_node(context_, block.where, p, {[](const PovColor& c) { return c.rgb; }});
   }
 
   Context& context_;
@@ -200,10 +200,16 @@ class PigmentReader {
 
 // ---- Writing.
 
-/// A number of a map, or a texture.
+Node part_node(Tree& tree, const Place& where, const ColorPart& part, const Vec3d& value) {
+  if (part.is_number)
+    return tree.number(where, static_cast<double>(static_cast<float>(std::max(0.0, value.x))));
+  return color_node(tree, where, value);
+}
+
+/// What an entry of a map shows.
 Node entry_node(Context& context, const Place& where, const PigmentEntry& entry, const ColorPart& part) {
   return entry.pigment != nullptr ? pigment_node(context, where, *entry.pigment, part)
-                                  : color_node(context.tree, where, part(entry.color));
+                                  : part_node(context.tree, where, part, part(entry.color));
 }
 
 /// The entries of a map within [0, 1], with further ones where `part` is not linear.
@@ -246,7 +252,7 @@ Node average_node(Context& context, const Place& where, const Pigment& p, const 
     const double weight = entry.at / sum;
     const Node keys = tree.map(where);
     if (entry.pigment == nullptr) {
-      tree.put(keys, "color", color_node(tree, where, part(entry.color) * weight));
+      tree.put(keys, "color", part_node(tree, where, part, part(entry.color) * weight));
     } else {
       const Node node = pigment_node(context, where, *entry.pigment, part);
       // A colour has been given above.
@@ -313,17 +319,16 @@ bool is_transparent(const Pigment& p) {
 
 Node pigment_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {
   Tree& tree = context.tree;
-  const auto mean = [&] { return color_node(tree, where, part(mean_of(p))); };
-  if (is_solid(p)) return color_node(tree, where, part(p.solid));
+  const auto mean = [&] { return part_node(tree, where, part, part(mean_of(p))); };
+  if (is_solid(p)) return part_node(tree, where, part, part(p.solid));
   if (p.is_average) {
     const Node node = p.entries.empty() ? nullptr : average_node(context, where, p, part);
     return node != nullptr ? node : mean();
   }
   const PovPattern& pattern = p.pattern;
-  if (pattern.key.empty() || (pattern.uses_uv && pattern.key != "projected")) {
-    context.tell(fmt::format("pattern {}{}", pattern.word, pattern.uses_uv ? " by uv" : ""), pattern.where,
-                 fmt::format("pattern '{}'{} has no meaning here; one colour stands for it", pattern.word,
-                             pattern.uses_uv ? " by uv" : ""));
+  if (pattern.key.empty()) {
+    context.tell(fmt::format("pattern {}", pattern.word), pattern.where,
+                 fmt::format("pattern '{}' has no meaning here; one colour stands for it", pattern.word));
     return mean();
   }
   if (pattern.key == "projected") return image_node(context, p, part);

@@ -42,8 +42,13 @@ bool is_transparent(const Pigment& pigment);
 /// Whether it has one colour.
 bool is_solid(const Pigment& pigment);
 
-/// What of a colour with what passes through is asked for.
-using ColorPart = std::function<Vec3d(const PovColor&)>;
+/// What of a colour with what passes through is asked for: a colour, or a number in all three channels.
+struct ColorPart {
+  std::function<Vec3d(const PovColor&)> of;
+  bool is_number = false;
+
+  Vec3d operator()(const PovColor& color) const { return of(color); }
+};
 
 /// The colours of a pigment as a value of scene files: a colour, or a texture.
 Node pigment_node(Context& context, const Place& where, const Pigment& pigment, const ColorPart& part);

@@ -19,7 +19,7 @@ namespace oktett::pov {
 namespace {
 
 /// Half the edge of the box in which a polynomial surface is seen that nothing else bounds.
-constexpr double kReach = 100;
+constexpr double kReach = 1000;
 
 class ShapeMaker {
  public:

@@ -52,6 +52,8 @@ class TextureReader {
         a.take();
       }
     }
+    if (pattern.uses_uv && pattern.is_none())
+      look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = true;
     if (pattern.is_none() || entries.empty()) return;
     if (!pattern.is_list) std::ranges::stable_sort(entries, {}, &TextureEntry::at);
     look.pattern = std::move(pattern), look.entries = std::move(entries), look.layers.clear();
@@ -150,7 +152,7 @@ class TextureReader {
     Pigment p;
     read_pigment(context_, block, p);
     return is_solid(p) ? nullptr
-                       : pigment_node(context_, block.where, p, [](const PovColor& c) { return c.rgb; });
+                       : pigment_node(context_, block.where, p, {[](const PovColor& c) { return c.rgb; }});
   }
 
   Context& context_;
