@@ -10,15 +10,17 @@ constexpr int kBoundLevels = 6;
 
 /// Whether the whole ball about p surely leaves.
 bool escapes(const JuliaElement& e, const Vec3d& p, double radius) {
-  double z[4] = {p.x, p.y, p.z, e.slice}, eps = radius * (1 + 0x1p-40);
+  JuliaNumber<double> z{p.x, p.y, p.z, e.slice};
+  double eps = radius * (1 + 0x1p-40);
   for (int n = 0;; ++n) {
-    const double zz = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3], length = std::sqrt(zz);
+    const double zz = z.norm2(), length = std::sqrt(zz);
     if (length - eps > e.radius * (1 + 0x1p-40)) return true;
     if (n == e.iterations || !(eps < 1e6)) return false;
-    eps = (2 * length + eps) * eps + 0x1p-45 * (zz + e.radius);
-    const double next[4] = {z[0] * z[0] - (z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) + e.c[0],
-                            2 * z[0] * z[1] + e.c[1], 2 * z[0] * z[2] + e.c[2], 2 * z[0] * z[3] + e.c[3]};
-    std::copy(next, next + 4, z);
+    const double factor = e.product(),
+                 of_power = e.power == 2 ? factor * (2 * length + eps)
+                                         : factor * factor * (3 * zz + 3 * length * eps + eps * eps);
+    eps = of_power * eps + 0x1p-45 * (e.power == 2 ? zz + e.radius : zz * length + e.radius);
+    z = z.next(e);
   }
 }
 
@@ -42,10 +44,16 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   const double size = std::sqrt(s.c[0] * s.c[0] + s.c[1] * s.c[1] + s.c[2] * s.c[2] + s.c[3] * s.c[3]);
   if (!(size <= 2) || !std::isfinite(s.slice) || s.iterations < 1 || s.iterations > kMaxJuliaIterations)
     return;
+  if (s.power != 2 && s.power != 3) return;
+  const double radius = 0.5 * (1 + std::sqrt(1 + 4 * size));
+  // Not so for a NaN.
+  const double escape = s.escape > radius && s.escape <= JuliaShape::kMostEscape ? s.escape : radius;
   const JuliaElement e{{s.c[0], s.c[1], s.c[2], s.c[3]},
                        s.slice,
-                       0.5 * (1 + std::sqrt(1 + 4 * size)),
-                       static_cast<int>(s.iterations)};
+                       escape,
+                       static_cast<int>(s.iterations),
+                       static_cast<int>(s.power),
+                       s.algebra == JuliaShape::Algebra::hypercomplex};
   const double inf = std::numeric_limits<double>::infinity();
   Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
   grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);

@@ -1,15 +1,19 @@
 #pragma once
-/// \file Filled quaternion Julia sets of q^2 + c after a number of iterations (A. Norton: Generation and
-/// Display of Geometric Fractals in 3-D, 1982), solved by enclosures along the ray
-/// (kernels/exact/march.h).
+/// \file Filled Julia sets of q^2 + c or q^3 + c after a number of iterations, in the quaternions (A. Norton:
+/// Generation and Display of Geometric Fractals in 3-D, 1982) or hypercomplex numbers, solved by enclosures
+/// along the ray (kernels/exact/march.h).
 ///
-/// With z_0 = q and z_k+1 = z_k^2 + c, the surface is where |z_n| = R = (1 + sqrt(1 + 4 |c|)) / 2; what is
-/// farther out never comes back. Along a piece of the ray, h from its middle with |h| <= d, each iterate is
-/// enclosed as z + w h + e with |e| <= eps, and its derivative as w + f with |f| <= phi (a Taylor model of
-/// degree 1: K. Makino, M. Berz 2003). As |pq| = |p| |q| for quaternions, with r = |w| d + eps
-///   eps' = 2 |z| eps + r^2,   phi' = 2 (|z| phi + r (|w| + phi)),
-/// to which the roundings of z and w are added. A piece of which all has |z_k| > R for some k is outside. So
-/// no estimate of a distance is trusted, and no step is made that is not proved.
+/// With z_0 = q and z_k+1 = z_k^p + c, the surface is where |z_n| = R, which is (1 + sqrt(1 + 4 |c|)) / 2 or
+/// more; what is farther out never comes back. Along a piece of the ray, h from its middle with |h| <= d,
+/// each iterate is enclosed as z + w h + e with |e| <= eps, and its derivative as w + f with |f| <= phi (a
+/// Taylor model of degree 1: K. Makino, M. Berz 2003). With |ab| <= K |a| |b| and r = |w| d + eps
+///   eps' = K (2 |z| eps + r^2),   phi' = 2 K (|z| phi + r (|w| + phi))
+/// for squares, and for cubes, with two products each,
+///   eps' = K^2 (3 |z|^2 eps + 3 |z| r^2 + r^3),   phi' = 3 K^2 (|z|^2 phi + (2 |z| r + r^2) (|w| + phi)),
+/// to which the roundings of z and w are added. K is 1 for quaternions. Hypercomplex numbers are pairs of
+/// complex ones u and v, multiplied one by one, with |q|^2 = (|u|^2 + |v|^2) / 2: there K is the root of 2,
+/// and |q^p| >= |q|^p, so that R is the same. A piece of which all has |z_k| > R for some k is outside. So no
+/// estimate of a distance is trusted, and no step is made that is not proved.
 
 #include "kernels/exact/march.h"
 #include "kernels/fractals/julia_data.h"
@@ -21,6 +25,61 @@ struct JuliaElement {
   double slice;
   double radius;  ///< R
   int iterations;
+  int power;
+  bool hypercomplex;
+
+  /// |ab| <= product() |a| |b|.
+  double product() const { return hypercomplex ? 1.4142135623730952 : 1.0; }
+};
+
+/// A number r + i i + j j + k k.
+template <class D>
+struct JuliaNumber {
+  D r, i, j, k;
+
+  OKTETT_INLINE D norm2() const { return (r * r + i * i) + (j * j + k * k); }
+  /// Twice the part along w.
+  OKTETT_INLINE D twice_along(const JuliaNumber& w) const {
+    return D(2.0) * ((r * w.r + i * w.i) + (j * w.j + k * w.k));
+  }
+  /// The product in the hypercomplex numbers.
+  OKTETT_INLINE JuliaNumber hyper(const JuliaNumber& w) const {
+    return {(r * w.r - i * w.i) - (j * w.j - k * w.k), (r * w.i + i * w.r) - (j * w.k + k * w.j),
+            (r * w.j + j * w.r) - (k * w.i + i * w.k), (r * w.k + k * w.r) + (i * w.j + j * w.i)};
+  }
+  OKTETT_INLINE JuliaNumber times(const D& x) const { return {r * x, i * x, j * x, k * x}; }
+  /// The derivative of the image where that of the number is w.
+  OKTETT_INLINE JuliaNumber next_slope(const JuliaElement& e, const JuliaNumber& w) const {
+    const D two(2.0), three(3.0);
+    if (e.hypercomplex) return e.power == 2 ? hyper(w).times(two) : hyper(*this).hyper(w).times(three);
+    if (e.power == 2)
+      return {two * ((r * w.r - i * w.i) - (j * w.j + k * w.k)), two * (r * w.i + w.r * i),
+              two * (r * w.j + w.r * j), two * (r * w.k + w.r * k)};
+    const D s = (i * i + j * j) + k * k, turn = two * ((i * w.i + j * w.j) + k * w.k), rr = three * (r * r);
+    const D m = rr - s, by = D(6.0) * (r * w.r) - turn;
+    return {(rr - three * s) * w.r - three * (r * turn), by * i + m * w.i, by * j + m * w.j,
+            by * k + m * w.k};
+  }
+  /// The image.
+  OKTETT_INLINE JuliaNumber next(const JuliaElement& e) const {
+    const D two(2.0), three(3.0);
+    JuliaNumber q;
+    if (e.hypercomplex) {
+      q = hyper(*this);
+      if (e.power == 3) q = q.hyper(*this);
+    } else if (e.power == 2) {
+      q = {(r * r - i * i) - (j * j + k * k), two * (r * i), two * (r * j), two * (r * k)};
+    } else {
+      const D s = (i * i + j * j) + k * k, m = three * (r * r) - s;
+      q = {r * (r * r - three * s), m * i, m * j, m * k};
+    }
+    return {q.r + D(e.c[0]), q.i + D(e.c[1]), q.j + D(e.c[2]), q.k + D(e.c[3])};
+  }
+  template <class M>
+  OKTETT_INLINE void set(const M& where, const JuliaNumber& q) {
+    r = select(where, q.r, r), i = select(where, q.i, i), j = select(where, q.j, j),
+    k = select(where, q.k, k);
+  }
 };
 
 /// |z_n|^2 - R^2 along rays.
@@ -29,39 +88,18 @@ struct JuliaField {
   const JuliaElement& e;
   Vec3<D> o, d;
 
-  /// Roundings are below this, relative; one iteration makes fewer than eight.
-  static constexpr double kRound = 0x1p-49;
+  /// Roundings are below this, relative; one iteration makes fewer than eight, of cubes fewer than 32.
+  static constexpr double kRound = 0x1p-49, kRoundOfCubes = 0x1p-47;
   static constexpr double kHuge = 1e40;
 
-  struct Quaternion {
-    D r, i, j, k;
-    OKTETT_INLINE D norm2() const { return (r * r + i * i) + (j * j + k * k); }
-    /// Twice the part along w.
-    OKTETT_INLINE D twice_along(const Quaternion& w) const {
-      return D(2.0) * ((r * w.r + i * w.i) + (j * w.j + k * w.k));
-    }
-    /// The derivative of the square where that of the quaternion is w.
-    OKTETT_INLINE Quaternion square_slope(const Quaternion& w) const {
-      const D two(2.0);
-      return {two * ((r * w.r - i * w.i) - (j * w.j + k * w.k)), two * (r * w.i + w.r * i),
-              two * (r * w.j + w.r * j), two * (r * w.k + w.r * k)};
-    }
-    OKTETT_INLINE Quaternion square_plus(const double (&c)[4]) const {
-      const D two(2.0);
-      return {((r * r - i * i) - (j * j + k * k)) + D(c[0]), two * (r * i) + D(c[1]), two * (r * j) + D(c[2]),
-              two * (r * k) + D(c[3])};
-    }
-    OKTETT_INLINE void set(const typename D::M& where, const Quaternion& q) {
-      r = select(where, q.r, r), i = select(where, q.i, i), j = select(where, q.j, j),
-      k = select(where, q.k, k);
-    }
-  };
+  using Number = JuliaNumber<D>;
 
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
-    const D zero(0.0), two(2.0), u(kRound), radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
-    Quaternion z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
+    const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
+        radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
+    Number z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
     const D far = sqrt((o.x * o.x + o.y * o.y) + o.z * o.z);
     D eps = u * (far + sqrt(z.norm2())), phi = zero, escaped_by = zero;
     auto escaped = m == m;
@@ -75,9 +113,19 @@ struct JuliaField {
       lost = lost | ~(length + r + slope + phi < D(kHuge));
       const auto stays = ~(escaped | lost);
       if (n == e.iterations || none(stays)) break;
-      eps = select(stays, two * length * eps + r * r + u * (zz + cc + length * slope * half), eps);
-      phi = select(stays, two * (length * phi + r * (slope + phi)) + u * length * slope, phi);
-      w.set(stays, z.square_slope(w)), z.set(stays, z.square_plus(e.c));
+      const D all = slope + phi;
+      if (e.power == 2) {
+        eps = select(stays, product * (two * length * eps + r * r) + u * (zz + cc + length * slope * half),
+                     eps);
+        phi = select(stays, product * (two * (length * phi + r * all)) + u * length * slope, phi);
+      } else {
+        const D squared = product * product;
+        const D off = three * zz * eps + (three * length + r) * (r * r);
+        const D turn = three * (zz * phi + (two * length + r) * r * all);
+        eps = select(stays, squared * off + u * (zz * length + cc + zz * slope * half), eps);
+        phi = select(stays, squared * turn + u * zz * slope, phi);
+      }
+      w.set(stays, z.next_slope(e, w)), z.set(stays, z.next(e));
     }
     const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
     const D by_h = z.twice_along(w);
@@ -123,14 +171,14 @@ struct Julia {
                                   Vec3<D>& gradient) {
     const JuliaElement& e = pool.elements[i];
     const D zero(0.0), one(1.0);
-    using Q = typename JuliaField<D>::Quaternion;
+    using Q = JuliaNumber<D>;
     Q z{p.x, p.y, p.z, D(e.slice)},
         w[3] = {{one, zero, zero, zero}, {zero, one, zero, zero}, {zero, zero, one, zero}};
     for (int n = 0; n < e.iterations; ++n) {
       const auto stays = z.norm2() < D(0x1p20);
       if (none(stays)) break;
-      for (Q& v : w) v.set(stays, z.square_slope(v));
-      z.set(stays, z.square_plus(e.c));
+      for (Q& v : w) v.set(stays, z.next_slope(e, v));
+      z.set(stays, z.next(e));
     }
     value = z.norm2() - D(e.radius * e.radius);
     gradient = {z.twice_along(w[0]), z.twice_along(w[1]), z.twice_along(w[2])};

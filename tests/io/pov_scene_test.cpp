@@ -128,7 +128,9 @@ TEST(PovScene, ShapesHaveTheirKeys) {
       {"isosurface { function { x*x + y - 2 } threshold 0.5 }",
        "{implicit: {function: \"(((x * x) + y) - 2) - 0.5\", bounds: {min: [-1, -1, -1], max: [1, 1, 1]}}}"},
       {"julia_fractal { <-0.1, 0.8, 0, 0> max_iteration 8 }",
-       "{julia: {c: [-0.1, 0.8, 0, 0], iterations: 8}}"},
+       "{julia: {c: [-0.1, 0.8, 0, 0], iterations: 8, escape: 4}}"},
+      {"julia_fractal { <-0.1, 0.8, 0, 0> max_iteration 8 hypercomplex cube }",
+       "{julia: {c: [-0.1, 0.8, 0, 0], iterations: 8, algebra: hypercomplex, power: 3, escape: 4}}"},
   });
 }
 

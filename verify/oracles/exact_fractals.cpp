@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -127,20 +128,45 @@ ExactOracle ifs(CaseRandom& random) {
           hi};
 }
 
+/// A product by the table of units.
+std::array<Real, 4> times(JuliaShape::Algebra algebra, const std::array<Real, 4>& p,
+                          const std::array<Real, 4>& q) {
+  // Of i, j and k with each other: which unit, and its sign.
+  struct Unit {
+    std::size_t which;
+    int sign;
+  };
+  constexpr Unit kQuaternion[3][3] = {
+      {{0, -1}, {3, 1}, {2, -1}}, {{3, -1}, {0, -1}, {1, 1}}, {{2, 1}, {1, -1}, {0, -1}}};
+  constexpr Unit kHyper[3][3] = {
+      {{0, -1}, {3, 1}, {2, -1}}, {{3, 1}, {0, -1}, {1, -1}}, {{2, -1}, {1, -1}, {0, 1}}};
+  const auto& table = algebra == JuliaShape::Algebra::hypercomplex ? kHyper : kQuaternion;
+  std::array<Real, 4> sum{p[0] * q[0], 0, 0, 0};
+  for (std::size_t i = 1; i < 4; ++i) sum[i] = p[0] * q[i] + p[i] * q[0];
+  for (std::size_t i = 1; i < 4; ++i)
+    for (std::size_t k = 1; k < 4; ++k)
+      sum[table[i - 1][k - 1].which] += static_cast<Real>(table[i - 1][k - 1].sign) * p[i] * q[k];
+  return sum;
+}
+
 ExactOracle julia(CaseRandom& random) {
   JuliaShape s;
   for (double& c : s.c) c = 0.6 * random.sign();
   s.slice = random.unit() < 0.5 ? 0 : 0.3 * random.sign();
   s.iterations = 1 + static_cast<std::uint32_t>(random.unit() * 6);
+  if (random.unit() < 0.5) s.algebra = JuliaShape::Algebra::hypercomplex;
+  if (random.unit() < 0.3) s.power = 3;
+  if (random.unit() < 0.3) s.escape = 4;
   Real size = 0;
   for (const double c : s.c) size += static_cast<Real>(c) * c;
-  const Real r = (1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2;
+  const Real r = std::max((1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2, static_cast<Real>(s.escape));
   ExactOracle o{{s}, [s, r](const Vec3l& p) {
                   Real a = p.x, b = p.y, c = p.z, d = s.slice;
                   for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
-                    const Real twice = 2 * a, square = a * a - b * b - c * c - d * d;
-                    a = square + s.c[0], b = twice * b + s.c[1], c = twice * c + s.c[2],
-                    d = twice * d + s.c[3];
+                    const std::array<Real, 4> z{a, b, c, d};
+                    std::array<Real, 4> q = z;
+                    for (std::uint32_t k = 1; k < s.power; ++k) q = times(s.algebra, q, z);
+                    a = q[0] + s.c[0], b = q[1] + s.c[1], c = q[2] + s.c[2], d = q[3] + s.c[3];
                   }
                   return a * a + b * b + c * c + d * d - r * r;
                 }};

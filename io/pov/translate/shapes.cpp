@@ -484,7 +484,8 @@ class ShapeMaker {
     a_.take();
     double iterations = 20, slice = 0;
     std::array<double, 5> normal{0, 0, 0, 1};
-    bool known = true;
+    bool known = true, hypercomplex = false;
+    int power = 2;
     while (!a_.at_end()) {
       if (a_.take_word("max_iteration")) {
         iterations = a_.number("a number");
@@ -495,24 +496,28 @@ class ShapeMaker {
         slice = a_.number("a distance");
       } else if (a_.take_word("quaternion") || a_.take_word("sqr")) {
       } else if (a_.take_word("hypercomplex")) {
-        known = false;
-      } else if (a_.peek_word() == "cube" || a_.peek_word() == "exp" || a_.peek_word() == "reciprocal" ||
-                 a_.peek_word() == "sin" || a_.peek_word() == "cos" || a_.peek_word() == "pwr" ||
-                 a_.peek_word() == "ln") {
+        hypercomplex = true;
+      } else if (a_.take_word("cube")) {
+        power = 3;
+      } else if (a_.peek_word() == "exp" || a_.peek_word() == "reciprocal" || a_.peek_word() == "sin" ||
+                 a_.peek_word() == "cos" || a_.peek_word() == "pwr" || a_.peek_word() == "ln") {
         known = false, a_.take();
       } else {
         break;
       }
     }
     if (!known || normal[0] != 0 || normal[1] != 0 || normal[2] != 0 || normal[3] == 0)
-      return left_out(
-          "of julia fractals only squares of quaternions are read, in slices along the fourth axis");
+      return left_out("of julia fractals only squares and cubes are read, in slices along the fourth axis");
     if (std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) > 2)
       return left_out("the fractal is empty");
     const Node keys = map();
     tree_.put(keys, "c", tree_.numbers(where_, std::span(v.data(), 4)));
     if (slice != 0) tree_.put(keys, "slice", number(slice / normal[3]));
     tree_.put(keys, "iterations", number(std::clamp(std::round(iterations), 1.0, 24.0)));
+    if (hypercomplex) tree_.put(keys, "algebra", tree_.word(where_, "hypercomplex"));
+    if (power != 2) tree_.put(keys, "power", number(power));
+    // POV-Ray lets points go from there on.
+    tree_.put(keys, "escape", number(4));
     return one("julia", keys);
   }
 
