@@ -209,8 +209,8 @@ TEST(PovScene, LooksBecomeMaterials) {
   EXPECT_EQ(material("pigment { rgb 1 } finish { specular 1 roughness 0.01 }"),
             "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, specular: 1, phong: 25}}");
   EXPECT_EQ(material("pigment { rgbf <1, 0.5, 1, 0.75> } interior { ior 1.5 }"),
-            "{material: {color: [0.25, 0.125, 0.25], ambient: 0.1, diffuse: 0.6, transparency: 0.75, filter: "
-            "[1, 0.5, 1], "
+            "{material: {color: [1, 0.5, 1], ambient: 0.025, diffuse: 0.15, transparency: 0.75, filter: [1, "
+            "0.5, 1], "
             "ior: 1.5}}");
   EXPECT_EQ(
       material("pigment { checker rgb 0, rgb 1 scale 2 }"),
@@ -290,10 +290,10 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
       "0.1, diffuse: 0.6, transparency: 1, filter: {over: {color: [0, 0, 0], filter: [0.5, 0.5, 0.5], under: "
       "[0, 0, 0]}}, ior: 1}}");
   // What passes differs in a pattern.
-  EXPECT_EQ(
-      material("pigment { onion color_map { [0 rgb 1] [1 rgbf 1] } }"),
-      "{material: {color: {onion: {map: [[0, [1, 1, 1]], [1, [0, 0, 0]]]}}, ambient: 0.1, diffuse: 0.6, "
-      "transparency: 1, filter: {onion: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, ior: 1}}");
+  EXPECT_EQ(material("pigment { onion color_map { [0 rgb 1] [1 rgbf 1] } }"),
+            "{material: {color: [1, 1, 1], ambient: {onion: {map: [[0, 0.1], [1, 0]]}}, diffuse: {onion: "
+            "{map: [[0, 0.6], "
+            "[1, 0]]}}, transparency: 1, filter: {onion: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, ior: 1}}");
   // A normal: 2/15 of the slope of the pattern, in the size of the pattern.
   EXPECT_EQ(
       material("pigment { rgb 1 } normal { gradient x 0.75 scale 2 }"),

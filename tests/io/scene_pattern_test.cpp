@@ -153,10 +153,10 @@ TEST_F(ScenePattern, ErrorsSayWhatIsWrong) {
 
 TEST_F(ScenePattern, NestingHasAnEnd) {
   std::string text = "noise: ";
-  for (int i = 0; i < 7; ++i) text = "onion: {map: [[0, {" + text + "}]]}";
+  for (unsigned i = 1; i < kMostNestedTextures; ++i) text = "onion: {map: [[0, {" + text + "}]]}";
   EXPECT_TRUE(texture(text).pattern);
   text = "onion: {map: [[0, {" + text + "}]]}";
-  expect(text, "more than 8 of them in each other");
+  expect(text, "more than 16 of them in each other");
   // Few textures that are shown very often.
   std::string many = "noise: ";
   for (int i = 0; i < 4; ++i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/yaml/write_yaml.h"
 #include "render/pattern.h"
 
 namespace oktett::pov {
@@ -202,8 +203,15 @@ class PigmentReader {
 
 Node part_node(Tree& tree, const Place& where, const ColorPart& part, const Vec3d& value) {
   if (part.is_number)
-    return tree.number(where, static_cast<double>(static_cast<float>(std::max(0.0, value.x))));
+    return tree.word(where, fmt::format("{}", static_cast<float>(std::max(0.0, value.x)) + 0.0f));
   return color_node(tree, where, value);
+}
+
+/// The only value of several nodes that are no textures; null if there are others.
+Node only_value(const std::vector<Node>& nodes) {
+  for (const Node node : nodes)
+    if (node->kind == YamlKind::map || flow_text(*node) != flow_text(*nodes[0])) return nullptr;
+  return nodes.empty() ? nullptr : nodes[0];
 }
 
 /// What an entry of a map shows.
@@ -338,15 +346,22 @@ Node pigment_node(Context& context, const Place& where, const Pigment& p, const 
     const std::vector<PovColor> usual = default_colors(pattern);
     list.resize(std::min(list.size(), usual.size()));
     for (std::size_t i = list.size(); i < usual.size(); ++i) list.push_back({0, usual[i], nullptr});
-    for (const PigmentEntry& entry : list) Tree::push(values, entry_node(context, where, entry, part));
+    std::vector<Node> shown;
+    for (const PigmentEntry& entry : list) shown.push_back(entry_node(context, where, entry, part));
+    if (const Node only = only_value(shown)) return only;
+    for (const Node node : shown) Tree::push(values, node);
     return pattern_node(context, pattern, values);
   }
   // Without a map the values are greys.
   const std::vector<PigmentEntry> usual{{0, {{0, 0, 0}}, nullptr}, {1, {{1, 1, 1}}, nullptr}};
-  for (const PigmentEntry& entry : even_map(p.entries.empty() ? usual : p.entries)) {
+  const std::vector<PigmentEntry> map = even_map(p.entries.empty() ? usual : p.entries);
+  std::vector<Node> shown;
+  for (const PigmentEntry& entry : map) shown.push_back(entry_node(context, where, entry, part));
+  if (const Node only = only_value(shown)) return only;
+  for (std::size_t i = 0; i < map.size(); ++i) {
     const Node item = tree.list(where);
-    Tree::push(item, tree.number(where, entry.at));
-    Tree::push(item, entry_node(context, where, entry, part));
+    Tree::push(item, tree.number(where, map[i].at));
+    Tree::push(item, shown[i]);
     Tree::push(values, item);
   }
   return pattern_node(context, pattern, values);
