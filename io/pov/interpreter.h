@@ -137,6 +137,8 @@ class Interpreter {
   bool starts_value(const Token& token) const;
   Numbers parse_relation();
   Numbers parse_logic();
+  std::optional<std::string> take_string();
+  bool compare_string(const std::string& text);
   Numbers parse_sum();
   Numbers parse_product();
   Numbers parse_factor();

@@ -23,7 +23,7 @@ using test::TempDir;
 class PovFiles {
  public:
   pov::TranslatedScene translate(const std::string& text) const {
-    return read_pov_tree(dir.write("scene.pov", text), {}, kPovFilm);
+    return read_pov_tree(dir.write("scene.pov", text), {}, {});
   }
   /// The value of a key of the top level in one line.
   std::string section(const std::string& text, const std::string& key) const {
