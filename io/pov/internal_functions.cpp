@@ -25,8 +25,8 @@ struct Internal {
   bool curve = false;
 };
 
-// Curves and surfaces of algebra have the equations under which they are known, such as those of Boy's surface
-// after Apery, with the constants and signs that the values of POV-Ray 3.7 show.
+// Curves and surfaces of algebra have the equations under which they are known, such as those of Boy's
+// surface after Apery, with the constants and signs that the values of POV-Ray 3.7 show.
 constexpr double kField = 10;
 constexpr Internal kInternal[] = {
     // f_algbr_cyl2, 3 and 4
@@ -56,7 +56,8 @@ constexpr Internal kInternal[] = {
     {15, 9, "-$3 * ($0^4 - $4^2 * $0^2 - $1^4 + $5^2 * $1^2)", kField, true},
     // f_dupin_cyclid: a torus seen in a sphere about the origin
     {16, 9,
-     "-$3 * (($8^4 - 2 * $8^2 * ($6 * $0 + $7 * $1) + ($6^2 + $7^2 + $4^2 - $5^2) * ($0^2 + $1^2 + $2^2))^2 - "
+     "-$3 * (($8^4 - 2 * $8^2 * ($6 * $0 + $7 * $1) + ($6^2 + $7^2 + $4^2 - $5^2) * ($0^2 + $1^2 + $2^2))^2 "
+     "- "
      "4 * $4^2 * (($8^2 * $0 - $6 * ($0^2 + $1^2 + $2^2))^2 + $8^4 * $2^2))",
      kField},
     // f_ellipsoid
@@ -79,8 +80,8 @@ constexpr Internal kInternal[] = {
      "-$3 * (($0^2 + $1^2 + $2^2 + 2 * $1 - 1) * (($0^2 + $1^2 + $2^2 - 2 * $1 - 1)^2 - 8 * $2^2) + "
      "16 * $0 * $2 * ($0^2 + $1^2 + $2^2 - 2 * $1 - 1))",
      kField},
-    {36, 4,
-     "-$3 * ($0^4 + $1^4 + $2^4 - $0^2 - $1^2 - $2^2 - $0^2 * $1^2 - $0^2 * $2^2 - $1^2 * $2^2 + 1)", kField},
+    {36, 4, "-$3 * ($0^4 + $1^4 + $2^4 - $0^2 - $1^2 - $2^2 - $0^2 * $1^2 - $0^2 * $2^2 - $1^2 * $2^2 + 1)",
+     kField},
     {37, 7,
      "-$3 * ($0^4 + $1^4 + $2^4 - 1 + $4 * ($0^2 + $1^2 + $2^2) + "
      "$5 * ($0^2 * $1^2 + $0^2 * $2^2 + $1^2 * $2^2) + $6 * $0 * $1 * $2)",
@@ -91,7 +92,8 @@ constexpr Internal kInternal[] = {
     {41, 4, "-$3 * (4 * $0^2 * ($0^2 + $1^2 + $2^2) - $1^2 * (1 - $1^2 - $2^2))", kField},
     {42, 4, "-$3 * ($1^3 + $2^3 - 6 * $1 * $2)", kField},
     {43, 4,
-     "-$3 * ($0^4 + 2 * $0^2 * $1^2 - $0^2 * $2^2 - $0^2 + $1^4 + $1^2 * $2^2 - 2 * $1^2 * $2 - $1^2 + $2^4 - "
+     "-$3 * ($0^4 + 2 * $0^2 * $1^2 - $0^2 * $2^2 - $0^2 + $1^4 + $1^2 * $2^2 - 2 * $1^2 * $2 - $1^2 + $2^4 "
+     "- "
      "2 * $2^3 + 2 * $2^2)",
      kField},
     {44, 7, "-$3 * (($0^2 + $1^2 + $2^2 + $4^2)^2 - $6 * $4^2 * ($0^2 + $2^2) - $5^2)", kField},

@@ -121,6 +121,8 @@ class Interpreter {
   // ---- Names
   Reference access(const Token& name);
   Reference variable(const Token& name, bool local);
+  /// The same as seen from a frame of this scope.
+  Reference variable(const Token& name, bool local, std::uint32_t scope);
   void bind(Name& name, std::uint32_t scope, Reference reference);
   const Datum& value_of(const Reference& reference, const Token& name);
   [[noreturn]] void undeclared(const Token& name);

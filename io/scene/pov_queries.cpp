@@ -31,10 +31,10 @@ static constexpr double kEndless = 1e10;
 
 struct PovQueries::Surfaces {
   World world;
-  Vec3d origin;           ///< from which places in `world` count
-  bool is_there = false;  ///< false: nothing is left of it
-  bool negative = false;  ///< it stands for all but what is in the world
-  pov::Extent extent;     ///< as its statements say it
+  Vec3d origin;             ///< from which places in `world` count
+  bool is_there = false;    ///< false: nothing is left of it
+  bool negative = false;    ///< it stands for all but what is in the world
+  pov::Extent extent;       ///< as its statements say it
   std::uint64_t cost = 10;  ///< steps of a question
 };
 
@@ -49,7 +49,7 @@ struct PovQueries::Look {
 /// What is kept of a block.
 struct PovQueries::Asked {
   BlockPointer block;
-  std::uint64_t weight = 0;
+  std::uint64_t weight = 0, functions = 0;
   std::unique_ptr<Surfaces> seen, solid;
   std::unique_ptr<Look> look;
 };
@@ -64,10 +64,30 @@ const std::shared_ptr<const Block>* block_in(const Element& element) {
   return block != nullptr && *block != nullptr ? block : nullptr;
 }
 
+/// Steps of the functions in a block, where a function that is called counts each time, up to a bound.
+std::uint64_t function_steps(const pov::Function& function, int depth) {
+  constexpr std::uint64_t kMost = 1'000'000;
+  std::uint64_t sum = function.nodes.size();
+  for (const pov::FunctionNode& node : function.nodes)
+    if (node.function != nullptr && depth < 8 && sum < kMost)
+      sum += function_steps(*node.function, depth + 1);
+  return std::min(sum, kMost);
+}
+std::uint64_t function_steps(const Block& block) {
+  if (block.keyword == "texture" || block.keyword == "pigment" || block.keyword == "normal") return 0;
+  std::uint64_t sum = 0;
+  for (const Element& element : block.elements)
+    if (const auto* const function = std::get_if<std::shared_ptr<const pov::Function>>(&element.value))
+      if (*function != nullptr) sum += function_steps(**function, 0);
+  return sum;
+}
+
 /// How much is in a block, where what is declared counts once: it is shown by instances, unless it is small.
-void add_weight(const Block& block, std::unordered_set<const Block*>& seen, std::uint64_t& sum) {
+void add_weight(const Block& block, std::unordered_set<const Block*>& seen, std::uint64_t& sum,
+                std::uint64_t& functions) {
   constexpr std::uint64_t kInstance = 100;
   sum += 1 + block.elements.size();
+  functions += function_steps(block);
   for (const Element& element : block.elements) {
     if (sum > kMostElements) return;
     const std::shared_ptr<const Block>* const inner = block_in(element);
@@ -76,7 +96,7 @@ void add_weight(const Block& block, std::unordered_set<const Block*>& seen, std:
       sum += kInstance;
       if (!seen.insert(inner->get()).second) continue;
     }
-    add_weight(**inner, seen, sum);
+    add_weight(**inner, seen, sum, functions);
   }
 }
 
@@ -92,7 +112,7 @@ std::uint64_t cost_of(const Scene& scene) {
   };
   add(add, scene.objects);
   for (const Prototype& prototype : scene.prototypes) add(add, prototype.objects);
-  return 10 + 100 * std::min<std::uint64_t>(exact, 10) + std::min<std::uint64_t>(combined, 1000);
+  return 20 + 10 * std::min<std::uint64_t>(exact, 10) + std::min<std::uint64_t>(combined, 1000) / 4;
 }
 
 Vec3d vector(const pov::ObjectQueries::Point& p) { return {p[0], p[1], p[2]}; }
@@ -105,14 +125,14 @@ Vec3d twice(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-std::uint64_t PovQueries::weight(const Block& block) {
+PovQueries::Weight PovQueries::weight(const Block& block) {
   std::unordered_set<const Block*> seen;
-  std::uint64_t sum = 0;
-  add_weight(block, seen, sum);
+  std::uint64_t sum = 0, functions = 0;
+  add_weight(block, seen, sum, functions);
   if (sum > kMostElements)
     throw document_->error(block.where, "this object is asked, and has more than " +
                                             std::to_string(kMostElements) + " elements");
-  return sum;
+  return {sum, functions};
 }
 
 PovQueries::Asked& PovQueries::find(const BlockPointer& block) {
@@ -120,14 +140,14 @@ PovQueries::Asked& PovQueries::find(const BlockPointer& block) {
     asked_.splice(asked_.begin(), asked_, known->second);
     return asked_.front();
   }
-  const std::uint64_t heavy = weight(*block);
+  const auto [heavy, functions] = weight(*block);
   while (!asked_.empty() && (asked_.size() >= kMostObjects || weight_ + heavy > kMostKept)) {
     weight_ -= asked_.back().weight;
     places_.erase(asked_.back().block.get());
     asked_.pop_back();
   }
   asked_.emplace_front().block = block;
-  asked_.front().weight = heavy;
+  asked_.front().weight = heavy, asked_.front().functions = functions;
   weight_ += heavy;
   places_[block.get()] = asked_.begin();
   steps_ += heavy / 4;
@@ -155,7 +175,7 @@ const PovQueries::Surfaces& PovQueries::surfaces(Asked& asked, bool as_solid) {
     options.quality = BuildQuality::fast;
     made->world = build_world(scene, options);
     made->origin = scene.origin;
-    made->cost = cost_of(scene);
+    made->cost = cost_of(scene) + asked.functions / 4;
     steps_ += made->world.triangles;
   }
   kept = std::move(made);
@@ -190,7 +210,9 @@ std::optional<pov::ObjectQueries::Hit> PovQueries::trace(const BlockPointer& obj
   answer.found = true;
   answer.point = oktett::point(vector(origin) + unit * dot(twice(surface.position) - from, unit));
   Vec3d normal = twice(surface.shading_normal);
-  if (s.negative) normal = normal * -1.0;
+  // The front of a flat triangle is the one that the left hand finds, as POV-Ray has it.
+  const TriangleMesh* const mesh = mesh_point(*s.world.accel, hit).mesh;
+  if (s.negative != (mesh != nullptr && mesh->normals.empty())) normal = normal * -1.0;
   answer.normal = oktett::point(normal / length(normal));
   return answer;
 }
@@ -203,12 +225,13 @@ std::optional<std::pair<pov::ObjectQueries::Point, pov::ObjectQueries::Point>> P
   const bool endless = s.negative || (s.is_there && (stats(*s.world.accel).unbounded > 0 || box.empty()));
   if (endless) return {{{-kEndless, -kEndless, -kEndless}, {kEndless, kEndless, kEndless}}};
   if (box.empty()) return {{{0, 0, 0}, {0, 0, 0}}};
-  // The box here is rounded to floats. Where its statements say the same, they are exact.
-  const auto exact = [](double rounded, double said) {
-    return std::abs(rounded - said) <= 1e-6 * std::max(1.0, std::abs(said)) ? said : rounded;
-  };
+  // The box here is rounded to floats. Where its statements say the same, or more, they are exact.
   Vec3d lo = twice(box.lo) + s.origin, hi = twice(box.hi) + s.origin;
-  for (int k = 0; k < 3; ++k) lo[k] = exact(lo[k], s.extent.lo[k]), hi[k] = exact(hi[k], s.extent.hi[k]);
+  for (int k = 0; k < 3; ++k) {
+    const double small = 1e-6 * std::max({1.0, std::abs(lo[k]), std::abs(hi[k])});
+    if (s.extent.lo[k] > lo[k] - small && s.extent.lo[k] <= hi[k]) lo[k] = s.extent.lo[k];
+    if (s.extent.hi[k] < hi[k] + small && s.extent.hi[k] >= lo[k]) hi[k] = s.extent.hi[k];
+  }
   return {{oktett::point(lo), oktett::point(hi)}};
 }
 
@@ -288,7 +311,7 @@ std::optional<double> PovQueries::pattern(const BlockPointer& block, const Point
 
 std::optional<double> PovQueries::internal(std::uint32_t number, std::span<const double> arguments) {
   steps_ += 20;
-  if (number == pov::kNoiseFunction && arguments.size() >= 3)
+  if ((number == pov::kNoiseFunction || number == pov::kNoiseGeneratorFunction) && arguments.size() >= 3)
     return unit_noise({arguments[0], arguments[1], arguments[2]});
   return pov::internal_value(number, arguments);
 }

@@ -41,7 +41,10 @@ class PovQueries final : public pov::ObjectQueries {
 
   Asked& find(const BlockPointer& block);
   const Surfaces& surfaces(Asked& asked, bool as_solid);
-  std::uint64_t weight(const pov::Block& block);
+  struct Weight {
+    std::uint64_t elements, functions;  ///< steps of functions
+  };
+  Weight weight(const pov::Block& block);
   const Look& look(Asked& asked);
   void warn(const std::vector<Warning>& warnings);
 

@@ -344,9 +344,34 @@ TEST(PovLanguage, StringsAreCompared) {
                      "M(A[1]) M(\"\") #if (A[0] < A[1] & 1 < 2) #debug \"!\" #end"),
             "q!");
   EXPECT_EQ(error_of("#if (\"a\") #end"), "a.pov:1:9: expected a comparison behind a string, found ')'");
-  EXPECT_EQ(error_of("#if (\"a\" = 1) #end"), "a.pov:1:12: expected a string, found '1'");
+  EXPECT_EQ(error_of("#if (\"a\" = 1) #end"), "a.pov:1:12: expected a string, found the number 1");
   EXPECT_EQ(error_of("#declare S = \"a\"; #if (1 = S) #end"),
-            "a.pov:1:29: expected a number, a vector or a colour, found 'S', which is a string");
+            "a.pov:1:28: expected a number, a vector or a colour, found 'S', which is a string");
+}
+
+// By POV-Ray 3.7.0.10, too.
+TEST(PovLanguage, ValuesMayEndInTheTextOfAMacro) {
+  // The ';' ends the declaration, and what it declares stands outside of the macro.
+  EXPECT_EQ(debug_of("#macro V() #local Q = 3; Q; #end #declare Q = V() #debug str(Q, 0, 0) "
+                     "#macro W() #local R = V() #debug str(R, 0, 0) #end W()"),
+            "33");
+  EXPECT_EQ(
+      debug_of("#macro V(A) #if (A) A; #else 7; #end #end #macro W() #local R = V(0) #local R = R + V(2) "
+               "#debug str(R, 0, 0) #end W() #ifdef (R) #debug \"left\" #end"),
+      "9");
+}
+
+TEST(PovLanguage, WhatPovRayIsLenientWith) {
+  // Commas between the values of a macro, a '#' without a directive, the texture that a macro is given at
+  // once.
+  EXPECT_EQ(debug_of("#macro M(A, B) #debug str(A - B.x, 0, 0) #end M(5 <2,0,0>)"), "3");
+  EXPECT_EQ(read("camera { look_at <0,2,0>#\n}").document.statements.size(), 1u);
+  const Document document =
+      read("#macro M(T) sphere { 0, 1 texture { T } } #end #declare T = texture { pigment { rgb 1 } }\nM(T)")
+          .document;
+  EXPECT_EQ(document.statements.size(), 1u);
+  EXPECT_EQ(error_of("#macro M(A) #end M(5"),
+            "a.pov:1:21: expected ')', as macro 'M' takes 1 value, found the end of the file");
 }
 
 TEST(PovLanguage, EntriesWithoutANumberHaveTheWeightOne) {
@@ -412,7 +437,7 @@ TEST(PovLanguage, ErrorsNameThePlace) {
       {"#include \"nope.inc\"",
        "1:1: cannot include 'nope.inc': no such file beside 'a.pov' or in a library folder"},
       {"#fopen F \"a\" read",
-       "1:8: #fopen is not allowed: the option file_folder names a folder for files of scenes"},
+       "1:8: #fopen is not allowed: the option --files names a folder for files of scenes"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), "a.pov:" + message) << text;
 }

@@ -39,10 +39,10 @@ std::string debug_of(const std::string& text, std::uint64_t steps = 0) {
 
 /// What a trace finds: the place, and the normal.
 std::string trace(const std::string& object, const std::string& origin, const std::string& direction) {
-  return debug_of("#declare O = " + object + "#declare N = <9, 9, 9>; #declare P = trace(O, " + origin + ", " +
-                  direction +
-                  ", N);\n#macro V(v) concat(str(v.x + 0, 0, 3), \",\", str(v.y + 0, 0, 3), \",\", "
-                  "str(v.z + 0, 0, 3)) #end #debug concat(V(P), \" \", V(N))");
+  return debug_of("#declare O = " + object + "#declare N = <9, 9, 9>; #declare P = trace(O, " + origin +
+                  ", " + direction +
+                  ", N);\n#macro V(Q) concat(str(Q.x + 0, 0, 3), \",\", str(Q.y + 0, 0, 3), \",\", "
+                  "str(Q.z + 0, 0, 3)) #end #debug concat(V(P), \" \", V(N))");
 }
 
 std::string inside(const std::string& object, const std::string& point) {
@@ -50,8 +50,9 @@ std::string inside(const std::string& object, const std::string& point) {
 }
 
 std::string extent(const std::string& object) {
-  return debug_of("#declare O = " + object +
-                  "#debug concat(vstr(3, min_extent(O), \",\", 0, 3), \" \", vstr(3, max_extent(O), \",\", 0, 3))");
+  return debug_of(
+      "#declare O = " + object +
+      "#debug concat(vstr(3, min_extent(O), \",\", 0, 3), \" \", vstr(3, max_extent(O), \",\", 0, 3))");
 }
 
 /// Without the signs of zeros.
@@ -81,12 +82,15 @@ TEST(PovQueries, TraceFindsTheNearestSurface) {
 }
 
 TEST(PovQueries, TrianglesHaveTheirOwnNormals) {
-  EXPECT_EQ(plain(trace("triangle { -x, x, y }", "<0,0.1,-4>", "z*3")), "0.000,0.100,0.000 0.000,0.000,-1.000");
-  EXPECT_EQ(plain(trace("triangle { -x, x, y }", "<0,0.1,4>", "-z*3")), "0.000,0.100,0.000 0.000,0.000,-1.000");
+  EXPECT_EQ(plain(trace("triangle { -x, x, y }", "<0,0.1,-4>", "z*3")),
+            "0.000,0.100,0.000 0.000,0.000,-1.000");
+  EXPECT_EQ(plain(trace("triangle { -x, x, y }", "<0,0.1,4>", "-z*3")),
+            "0.000,0.100,0.000 0.000,0.000,-1.000");
   EXPECT_EQ(plain(trace("mesh { triangle { -x, y, x } }", "<0,0.1,-4>", "z")),
             "0.000,0.100,0.000 0.000,0.000,1.000");
-  EXPECT_EQ(plain(trace("mesh2 { vertex_vectors { 3, -x, y, x } face_indices { 1, <0,1,2> } }", "<0,0.1,-4>", "z")),
-            "0.000,0.100,0.000 0.000,0.000,1.000");
+  EXPECT_EQ(
+      plain(trace("mesh2 { vertex_vectors { 3, -x, y, x } face_indices { 1, <0,1,2> } }", "<0,0.1,-4>", "z")),
+      "0.000,0.100,0.000 0.000,0.000,1.000");
   EXPECT_EQ(plain(trace("mesh { smooth_triangle { -x, <-1,0,-1>, y, <0,1,-1>, x, <1,0,-1> } }", "<0.3,0.1,4>",
                         "-z")),
             "0.300,0.100,0.000 0.286,0.095,-0.953");
@@ -100,14 +104,15 @@ TEST(PovQueries, SurfacesOfAllKindsAreTraced) {
   EXPECT_EQ(plain(trace("torus { 2, 0.5 }", "<2,3,0>", "-y")), "2.000,0.500,0.000 0.000,1.000,0.000");
   EXPECT_EQ(plain(trace("union { sphere { 0, 1 } box { -1, 1 translate 3*y } }", "<0,9,0>", "-y")),
             "0.000,4.000,0.000 0.000,1.000,0.000");
-  EXPECT_EQ(plain(trace("union { #local B = sphere { 0, 1 } object { B translate x } object { B translate -x } }",
-                        "<1,9,0>", "-y")),
-            "1.000,1.000,0.000 0.000,1.000,0.000");
+  EXPECT_EQ(
+      plain(trace("union { #local B = sphere { 0, 1 } object { B translate x } object { B translate -x } }",
+                  "<1,9,0>", "-y")),
+      "1.000,1.000,0.000 0.000,1.000,0.000");
 }
 
 TEST(PovQueries, LooksDoNotMatter) {
-  EXPECT_EQ(plain(trace("sphere { 0, 1 pigment { image_map { png \"nothing.png\" } } normal { bumps 1 } }", "-4*z",
-                        "z")),
+  EXPECT_EQ(plain(trace("sphere { 0, 1 pigment { image_map { png \"nothing.png\" } } normal { bumps 1 } }",
+                        "-4*z", "z")),
             "0.000,0.000,-1.000 0.000,0.000,-1.000");
 }
 
@@ -129,10 +134,14 @@ TEST(PovQueries, InsideFollowsCombinations) {
 
 TEST(PovQueries, ExtentsAreBoxes) {
   EXPECT_EQ(extent("box { <-1,-2,-3>, <1,2,3> rotate 45*y }"), "-2.828,-2.000,-2.828 2.828,2.000,2.828");
-  EXPECT_EQ(extent("plane { y, 0 }"),
-            "-10000000000.000,-10000000000.000,-10000000000.000 10000000000.000,10000000000.000,10000000000.000");
+  EXPECT_EQ(
+      extent("plane { y, 0 }"),
+      "-10000000000.000,-10000000000.000,-10000000000.000 10000000000.000,10000000000.000,10000000000.000");
   EXPECT_EQ(extent("torus { 2, 0.5 }"), "-2.500,-0.500,-2.500 2.500,0.500,2.500");
-  EXPECT_EQ(extent("union { sphere { 0, 1 } sphere { 3*x, 0.5 } }"), "-1.000,-1.000,-1.000 3.500,1.000,1.000");
+  EXPECT_EQ(extent("union { sphere { 0, 1 } sphere { 3*x, 0.5 } }"),
+            "-1.000,-1.000,-1.000 3.500,1.000,1.000");
+  EXPECT_EQ(extent("intersection { sphere { 0, 1 } plane { y, 0.4 } }"),
+            "-1.000,-1.000,-1.000 1.000,0.400,1.000");
   // Numbers are exact where the object states them.
   EXPECT_EQ(debug_of("#declare O = box { 0, 1.1 } #if (max_extent(O).x = 1.1) #debug \"same\" #end"), "same");
 }
@@ -238,7 +247,8 @@ TEST(PovQueries, FunctionsOfTheirOwnNumbersHaveValues) {
   EXPECT_FALSE(pov::internal_value(61, std::vector<double>{1, 2}));
   EXPECT_FALSE(pov::internal_value(9, std::vector<double>{1, 2, 3, 4}));
   EXPECT_FALSE(pov::internal_value(4'000'000'000, std::vector<double>{1, 2, 3, 4}));
-  EXPECT_EQ(debug_of("#declare F = function { internal(17) } #debug str(F(1, 2, 3, 1, 1, 1), 0, 4)"), "3.7417");
+  EXPECT_EQ(debug_of("#declare F = function { internal(17) } #debug str(F(1, 2, 3, 1, 1, 1), 0, 4)"),
+            "3.7417");
 }
 
 TEST(PovQueries, ObjectsThatAreAskedHaveALimit) {
@@ -248,18 +258,20 @@ TEST(PovQueries, ObjectsThatAreAskedHaveALimit) {
   const std::string answer = debug_of(text + "#debug str(inside(A, 0), 0, 0)");
   EXPECT_TRUE(answer == "1" || answer.find("a.pov:") != std::string::npos) << answer;
   // Each question counts as steps, and the first one more.
-  EXPECT_NE(debug_of("#declare A = sphere { 0, 1 } #declare I = 0; #while (I < 1000) #declare B = trace(A, -4*z, z); "
-                     "#declare I = I + 1; #end",
-                     5000)
-                .find("more than 5000 steps"),
-            std::string::npos);
+  EXPECT_NE(
+      debug_of(
+          "#declare A = sphere { 0, 1 } #declare I = 0; #while (I < 1000) #declare B = trace(A, -4*z, z); "
+          "#declare I = I + 1; #end",
+          5000)
+          .find("more than 5000 steps"),
+      std::string::npos);
 }
 
 TEST(PovQueries, FilesAreOpenedWhereAFolderIsNamed) {
   const TempDir dir;
-  const std::string path =
-      dir.write("a.pov", "#fopen F \"out.txt\" write #write (F, \"1, \") #fclose F "
-                         "#fopen F \"out.txt\" read #read (F, A) sphere { 0, A }");
+  const std::string path = dir.write("a.pov",
+                                     "#fopen F \"out.txt\" write #write (F, \"1, \") #fclose F "
+                                     "#fopen F \"out.txt\" read #read (F, A) sphere { 0, A }");
   PovOptions options;
   EXPECT_THROW(read_pov_tree(path, {}, options), Error);
   options.files = dir.path().string();

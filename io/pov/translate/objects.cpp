@@ -195,7 +195,10 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
   }
   Arguments behind(context_, rest);
   const Modifiers m = read_modifiers(block, behind);
-  if (children.empty()) context_.fail(block.where, fmt::format("'{}' contains no object", k));
+  if (children.empty()) {
+    context_.warn(block.where, fmt::format("'{}' contains no object, and is left out", k));
+    return std::nullopt;
+  }
   return build_children(block, children, m, outer);
 }
 
