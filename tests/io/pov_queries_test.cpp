@@ -96,6 +96,13 @@ TEST(PovQueries, TrianglesHaveTheirOwnNormals) {
             "0.300,0.100,0.000 0.286,0.095,-0.953");
 }
 
+TEST(PovQueries, PolygonsHaveTheirFrontsOnTheOtherSide) {
+  EXPECT_EQ(plain(trace("polygon { 5, <-1,-1>, <1,-1>, <1,1>, <-1,1>, <-1,-1> }", "<0.1,0.2,-4>", "z")),
+            "0.100,0.200,0.000 0.000,0.000,1.000");
+  EXPECT_EQ(plain(trace("polygon { 5, <-1,-1>, <-1,1>, <1,1>, <1,-1>, <-1,-1> }", "<0.1,0.2,-4>", "z")),
+            "0.100,0.200,0.000 0.000,0.000,-1.000");
+}
+
 TEST(PovQueries, SurfacesOfAllKindsAreTraced) {
   EXPECT_EQ(plain(trace("isosurface { function { x*x + y*y + z*z - 0.25 } contained_by { box { -1, 1 } } "
                         "max_gradient 4 }",

@@ -317,7 +317,7 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
   EXPECT_EQ(
       files.warnings(
           "#version 3.7;\n#declare F = function { internal(76) } isosurface { function { F(x, y, z) }" + end),
-      "scene.pov:2:53: warning: this function contains noise (f_noise3d or f_noise_generator), which "
+      "scene.pov:2:40: warning: this function contains noise (f_noise3d or f_noise_generator), which "
       "expressions here do not have; the object is left out\n");
 }
 

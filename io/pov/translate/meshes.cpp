@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "core/far_mesh.h"
 #include "io/pov/translate/extent.h"
