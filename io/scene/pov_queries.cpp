@@ -161,9 +161,23 @@ void PovQueries::warn(const std::vector<Warning>& warnings) {
   }
 }
 
+template <class Make>
+void PovQueries::at_place(const Asked& asked, const Make& make) {
+  try {
+    make();
+  } catch (const Error& error) {
+    if (!error.where().file.empty()) throw;
+    throw document_->error(asked.block->where, error.what());
+  }
+}
+
 const PovQueries::Surfaces& PovQueries::surfaces(Asked& asked, bool as_solid) {
   std::unique_ptr<Surfaces>& kept = as_solid ? asked.solid : asked.seen;
-  if (kept) return *kept;
+  if (!kept) at_place(asked, [&] { kept = make_surfaces(asked, as_solid); });
+  return *kept;
+}
+
+std::unique_ptr<PovQueries::Surfaces> PovQueries::make_surfaces(const Asked& asked, bool as_solid) {
   steps_ += 500 + asked.weight * 2;
   const pov::TranslatedObject object = pov::translate_object(*document_, asked.block, as_solid);
   warn(object.scene.warnings);
@@ -178,8 +192,7 @@ const PovQueries::Surfaces& PovQueries::surfaces(Asked& asked, bool as_solid) {
     made->cost = cost_of(scene) + asked.functions / 4;
     steps_ += made->world.triangles;
   }
-  kept = std::move(made);
-  return *kept;
+  return made;
 }
 
 std::optional<bool> PovQueries::inside(const BlockPointer& object, const Point& point) {
@@ -269,7 +282,11 @@ static std::shared_ptr<const Block> pigment_of_pattern(const Block& pattern) {
 }
 
 const PovQueries::Look& PovQueries::look(Asked& asked) {
-  if (asked.look) return *asked.look;
+  if (!asked.look) at_place(asked, [&] { asked.look = make_look(asked); });
+  return *asked.look;
+}
+
+std::unique_ptr<PovQueries::Look> PovQueries::make_look(const Asked& asked) {
   steps_ += 500 + asked.weight * 2;
   const bool is_pigment = asked.block->keyword == "pigment";
   const pov::TranslatedScene translated =
@@ -286,8 +303,7 @@ const PovQueries::Look& PovQueries::look(Asked& asked) {
     made->texture = material.color_texture;
     made->transmit = material.transparency;
   }
-  asked.look = std::move(made);
-  return *asked.look;
+  return made;
 }
 
 std::optional<std::array<double, 5>> PovQueries::pigment(const BlockPointer& block, const Point& point) {

@@ -45,7 +45,12 @@ class PovQueries final : public pov::ObjectQueries {
     std::uint64_t elements, functions;  ///< steps of functions
   };
   Weight weight(const pov::Block& block);
+  std::unique_ptr<Surfaces> make_surfaces(const Asked& asked, bool as_solid);
   const Look& look(Asked& asked);
+  std::unique_ptr<Look> make_look(const Asked& asked);
+  /// Calls make(); an Error without a place gets that of the block.
+  template <class Make>
+  void at_place(const Asked& asked, const Make& make);
   void warn(const std::vector<Warning>& warnings);
 
   const pov::Document* document_ = nullptr;
