@@ -19,6 +19,7 @@ struct CheckArguments {
   std::vector<std::string> files;
   LimitArguments limits;
   std::vector<std::string> definitions;
+  std::string pov_files;
   bool strict = false;
 };
 
@@ -40,7 +41,8 @@ void print_finding(const std::string& text, std::set<std::string>& told) {
 
 /// Prints what is wrong in a file. Returns the exit status for it.
 int check(const std::string& path, const CheckArguments& arguments) {
-  const Findings findings = check_file(path, parse_definitions(arguments.definitions));
+  const Findings findings =
+      check_file(path, parse_definitions(arguments.definitions), {kPovFilm, arguments.pov_files});
   const std::vector<SceneFinding>& list = findings.list;
   const std::size_t shown = std::min(list.size(), kMostShown);
   std::set<std::string> told;
@@ -79,6 +81,7 @@ void add_check_command(CommandLine& line) {
                             [arguments] { return run_check(*arguments); });
   verb.positionals("files", arguments->files, "FILE...", "Scene files (.yaml, .pov), meshes or .mtl files");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene files; may be repeated");
+  add_pov_files_option(verb, arguments->pov_files);
   verb.flag("--strict", arguments->strict, "Exit with 2 for warnings, too");
   add_limit_options(verb, arguments->limits);
 }

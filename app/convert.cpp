@@ -25,6 +25,7 @@ struct ConvertArguments {
   ConvertOptions options;
   GltfWords gltf;
   std::vector<std::string> definitions;
+  std::string pov_files;
   LimitArguments limits;
   bool quiet = false;
 };
@@ -36,7 +37,8 @@ int convert_scene(const ConvertArguments& arguments) {
     throw Error(
         fmt::format("{}: a .pov becomes a scene file; expected the output .yaml or .yml", arguments.output));
   const PovConversion done =
-      convert_pov(arguments.input, arguments.output, parse_definitions(arguments.definitions));
+      convert_pov(arguments.input, arguments.output, parse_definitions(arguments.definitions),
+                  {kPovFilm, arguments.pov_files});
   print_warnings(done.warnings);
   if (arguments.quiet) return 0;
   for (const std::string& mesh : done.meshes) fmt::print("wrote {}\n", mesh);
@@ -80,6 +82,7 @@ void add_convert_command(CommandLine& line) {
   verb.flag("--weld", a->options.weld, "Make one of all vertices at the same place");
   add_gltf_options(verb, a->gltf, false);
   verb.option("-D", &a->definitions, "k=v", "Declare k in the .pov; may be repeated");
+  add_pov_files_option(verb, a->pov_files);
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
   add_limit_options(verb, a->limits);
 }

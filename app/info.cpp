@@ -172,6 +172,7 @@ struct InfoArguments {
   std::string file;
   LimitArguments limits;
   std::vector<std::string> definitions;
+  std::string pov_files;
   GltfWords gltf;
   std::string bvh;
   bool json = false;
@@ -309,7 +310,7 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
 int run_info(const InfoArguments& arguments) {
   apply_limits(arguments.limits);
   const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions), std::nullopt,
-                                 gltf_options(arguments.gltf));
+                                 gltf_options(arguments.gltf), {kPovFilm, arguments.pov_files});
   print_warnings(scene.warnings);
   const SceneSummary summary = summarize(scene);
   const TreeSummary tree = build_trees(scene, arguments);
@@ -328,6 +329,7 @@ void add_info_command(CommandLine& line) {
                             [arguments] { return run_info(*arguments); });
   verb.positional("file", arguments->file, "FILE", "Scene file (.yaml, .pov) or mesh");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  add_pov_files_option(verb, arguments->pov_files);
   add_gltf_options(verb, arguments->gltf, false);
   add_stroke_option(verb, arguments->gltf);
   add_bvh_option(verb, arguments->bvh);

@@ -67,6 +67,11 @@ const char* to_string(IntegratorKind kind) {
   return "";
 }
 
+void add_pov_files_option(Verb& verb, std::string& folder) {
+  verb.option("--files", &folder, "FOLDER",
+              "Folder in which #fopen of a .pov may read and write; default: none");
+}
+
 void add_picture_options(Verb& verb, RenderArguments& a) {
   verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
   add_setting_options(verb, a.settings);
@@ -83,6 +88,7 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v",
               "Define ${k} of the scene file, or declare k in a .pov; may be repeated");
+  add_pov_files_option(verb, a.pov_files);
   add_gltf_options(verb, a.gltf, true);
   add_stroke_option(verb, a.gltf);
   add_limit_options(verb, a.limits);

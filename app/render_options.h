@@ -48,7 +48,8 @@ struct RenderArguments {
   std::string isa;
   std::string bvh;  ///< quality of the trees; empty: the default
   std::vector<std::string> definitions;
-  std::string stats;  ///< "", "text" or "json"
+  std::string pov_files;  ///< PovOptions::files
+  std::string stats;      ///< "", "text" or "json"
   std::string display_server;
   std::string show;  ///< how to print the picture on the terminal; empty: not at all
   bool caustics = false;
@@ -83,6 +84,8 @@ std::optional<Look> look_of(const RenderArguments& arguments);
 std::optional<Vec3d> up_of(const RenderArguments& arguments);
 /// Where a mesh given alone is seen from. Throws Error for an unknown word, or if it does not belong here.
 Viewpoint viewpoint_of(const RenderArguments& arguments);
+/// The option --files.
+void add_pov_files_option(Verb& verb, std::string& folder);
 /// Splits `name=value` words; of several with one name the last counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
 void add_bvh_option(Verb& verb, std::string& quality);

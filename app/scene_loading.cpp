@@ -23,11 +23,12 @@ static Scene load_overridden(const RenderArguments& arguments) {
   const Viewpoint viewpoint = viewpoint_of(arguments);
   std::optional<IntegratorKind> integrator;
   if (is_given(arguments.settings, "--integrator")) integrator = none.integrator.kind;
-  Film pov_film = kPovFilm;
+  PovOptions pov;
+  pov.files = arguments.pov_files;
   if (is_given(arguments.settings, "--size"))
-    pov_film.width = none.film.width, pov_film.height = none.film.height;
+    pov.film.width = none.film.width, pov.film.height = none.film.height;
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator,
-                           gltf_options(arguments.gltf), pov_film);
+                           gltf_options(arguments.gltf), pov);
   override_scene(arguments, scene);
   if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {

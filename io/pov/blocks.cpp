@@ -97,6 +97,12 @@ std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint3
   std::uint32_t inner = 0;
   parse_elements(block->elements, keyword, keyword.kind == Token::Kind::word ? '}' : ']', inner);
   depth = std::max(depth, deeper(inner, keyword.where));
+  // An entry of a map without a number, as `average` may have, has the weight 1.
+  if (block->keyword == "[" && !block->elements.empty() &&
+      !std::holds_alternative<Numbers>(block->elements[0].value)) {
+    count_values(keyword.where, 1);
+    block->elements.insert(block->elements.begin(), {block->elements[0].where, number(1)});
+  }
   if (block->elements.capacity() > 2 * block->elements.size()) block->elements.shrink_to_fit();
   return block;
 }

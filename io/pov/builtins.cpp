@@ -10,17 +10,20 @@
 
 namespace oktett::pov {
 
-std::optional<bool> ObjectQueries::inside(const Block&, const Point&) { return std::nullopt; }
-std::optional<ObjectQueries::Hit> ObjectQueries::trace(const Block&, const Point&, const Point&) {
+void ObjectQueries::begin(const Document&) {}
+std::uint64_t ObjectQueries::take_steps() { return 0; }
+std::optional<bool> ObjectQueries::inside(const BlockPointer&, const Point&) { return std::nullopt; }
+std::optional<ObjectQueries::Hit> ObjectQueries::trace(const BlockPointer&, const Point&, const Point&) {
   return std::nullopt;
 }
-std::optional<std::pair<ObjectQueries::Point, ObjectQueries::Point>> ObjectQueries::extent(const Block&) {
+std::optional<std::pair<ObjectQueries::Point, ObjectQueries::Point>> ObjectQueries::extent(
+    const BlockPointer&) {
   return std::nullopt;
 }
-std::optional<std::array<double, 5>> ObjectQueries::pigment(const Block&, const Point&) {
+std::optional<std::array<double, 5>> ObjectQueries::pigment(const BlockPointer&, const Point&) {
   return std::nullopt;
 }
-std::optional<double> ObjectQueries::pattern(const Block&, const Point&) { return std::nullopt; }
+std::optional<double> ObjectQueries::pattern(const BlockPointer&, const Point&) { return std::nullopt; }
 std::optional<double> ObjectQueries::internal(std::uint32_t, std::span<const double>) { return std::nullopt; }
 std::optional<ObjectQueries::Point> ObjectQueries::turbulence(double, double, int, const Point&) {
   return std::nullopt;
@@ -271,7 +274,8 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
       open();
       const BlockPtr object = parse_object_argument();
       skip_comma();
-      const auto value = queries(token).inside(*object, next_point());
+      const auto value = queries(token).inside(object, next_point());
+      count_step(token.where, queries(token).take_steps());
       if (!value) fail(token.where, "'inside' is not available for this object");
       return close(number(*value));
     }
@@ -279,7 +283,8 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
     case "max_extent"_kw: {
       open();
       const BlockPtr object = parse_object_argument();
-      const auto value = queries(token).extent(*object);
+      const auto value = queries(token).extent(object);
+      count_step(token.where, queries(token).take_steps());
       if (!value) fail(token.where, in_quotes(name) + " is not available for this object");
       return close(vector(name == "min_extent" ? value->first : value->second));
     }
@@ -288,7 +293,8 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
       const BlockPtr object = parse_object_argument();
       skip_comma();
       const Point origin = next_point(), direction = next_point();
-      const auto hit = queries(token).trace(*object, origin, direction);
+      const auto hit = queries(token).trace(object, origin, direction);
+      count_step(token.where, queries(token).take_steps());
       if (!hit) fail(token.where, "'trace' is not available for this object");
       if (peek().kind == Token::Kind::word) {
         const Token normal = take();
@@ -375,6 +381,7 @@ std::optional<Numbers> Interpreter::parse_builtin(const Token& token) {
       const double octaves = parse_float();
       skip_comma();
       const auto value = queries(token).turbulence(lambda, omega, bounded(octaves), next_point());
+      count_step(token.where, queries(token).take_steps());
       if (!value) fail(token.where, "'vturbulence' is not available");
       return close(vector(*value));
     }

@@ -127,6 +127,11 @@ bool Interpreter::follow_directive(const Token& hash) {
       write_file();
       break;
     default: {
+      if (word.kind == Token::Kind::sign) {
+        warn(hash.where, "a '#' without a directive is left out");
+        push_back(word);
+        break;
+      }
       static const std::vector<std::string> known{
           "break",  "case",  "debug",  "declare", "default", "else",    "elseif",  "end",   "error",
           "fclose", "fopen", "for",    "if",      "ifdef",   "ifndef",  "include", "local", "macro",
@@ -179,11 +184,19 @@ Datum Interpreter::named(Datum datum, const Token& name) {
 }
 
 Reference Interpreter::variable(const Token& name, bool local) {
+  return variable(name, local, frames_.back().scope);
+}
+
+Reference Interpreter::variable(const Token& name, bool local, std::uint32_t scope) {
   std::vector<Binding>& bindings = name.name->bindings;
-  const std::uint32_t scope = frames_.back().scope;
-  if (!bindings.empty() && (!local || bindings.back().scope == scope)) return bindings.back().value;
-  bind(*name.name, local ? scope : 0, {std::make_shared<Datum>(), {}});
-  return bindings.back().value;
+  // Behind those of macros whose text has begun since.
+  const auto inner = std::find_if(bindings.begin(), bindings.end(),
+                                  [scope](const Binding& binding) { return binding.scope > scope; });
+  if (inner != bindings.begin() && (!local || std::prev(inner)->scope == scope))
+    return std::prev(inner)->value;
+  const std::uint32_t own = local ? scope : 0;
+  frames_[own].locals.push_back(name.name);
+  return bindings.insert(inner, Binding{own, {std::make_shared<Datum>(), {}}})->value;
 }
 
 /// `#declare NAME = value` or `#declare NAME[index] = value`; the `#declare` was read.
@@ -201,6 +214,12 @@ void Interpreter::declare(bool local) {
   std::optional<Reference> element;
   if (next_is('[')) element = access(name);
   expect('=', "behind the name that is declared");
+  // The value may end in the text of a macro, with names of its own.
+  const std::uint32_t scope = frames_.back().scope;
+  const auto set = [&](Datum value) {
+    if (!assign(element ? *element : variable(name, local, scope), std::move(value), name.where))
+      fail(name.where, "the array " + in_quotes(name.name->text) + " has changed in between");
+  };
   const Hold outer = hold_;
   hold_ = {frames_.size(), open_.size(), false};
   Datum value = named(parse_value(), name);
@@ -208,6 +227,8 @@ void Interpreter::declare(bool local) {
   if (const BlockPtr* first = value.get<BlockPtr>();
       first && (*first)->keyword == "texture" && !next_is(';')) {
     std::shared_ptr<Block> layers;
+    // What follows may be the call of a macro that is given the texture.
+    set(value);
     while (peek().keyword() == "texture"_kw) {
       const Token keyword = take();
       std::uint32_t depth = value.depth;
@@ -227,8 +248,7 @@ void Interpreter::declare(bool local) {
   hold_ = outer;
   if (!pending_.empty() && pending_.back().kind == Token::Kind::held) pending_.pop_back();
   if (next_is(';')) take();
-  if (!assign(element ? *element : variable(name, local), std::move(value), name.where))
-    fail(name.where, "the array " + in_quotes(name.name->text) + " has changed in between");
+  set(std::move(value));
 }
 
 void Interpreter::undef() {

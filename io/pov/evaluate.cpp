@@ -238,8 +238,14 @@ class Evaluation {
     return result;
   }
 
+  /// Counts what the last answer took.
+  void count_answer() {
+    if (queries_ != nullptr) count(queries_->take_steps());
+  }
+
   double internal(const FunctionNode& node, std::span<const double> arguments) {
     const auto value = queries_ ? queries_->internal(node.index, arguments) : std::nullopt;
+    count_answer();
     if (!value)
       throw NoValue{"the internal function " + std::to_string(node.index) +
                     " has no value while a scene is read"};
@@ -263,11 +269,13 @@ class Evaluation {
       return result;
     }
     if (node.block->keyword == "pigment") {
-      const auto color = queries_ ? queries_->pigment(*node.block, point) : std::nullopt;
+      const auto color = queries_ ? queries_->pigment(node.block, point) : std::nullopt;
+      count_answer();
       if (!color) throw NoValue{"pigments have no values while a scene is read"};
       return {*color, 5, true};
     }
-    const auto value = queries_ ? queries_->pattern(*node.block, point) : std::nullopt;
+    const auto value = queries_ ? queries_->pattern(node.block, point) : std::nullopt;
+    count_answer();
     if (!value) throw NoValue{"patterns have no values while a scene is read"};
     return {{*value}, 1, false};
   }

@@ -70,12 +70,45 @@ Numbers Interpreter::parse_relation() {
   return holds ? chosen : other;
 }
 
+/// The string that stands next, if one does. A name that stands for something else becomes the next term.
+std::optional<std::string> Interpreter::take_string() {
+  if (term_) return std::nullopt;
+  const Token& next = peek();
+  if (next.kind == Token::Kind::string || is_string_keyword(next.keyword())) return parse_string();
+  if (next.kind != Token::Kind::word || next.keyword() != kNoKeyword) return std::nullopt;
+  const Token name = take();
+  const Reference reference = access(name);
+  const Datum datum = value_of(reference, name);
+  if (const std::string* text = datum.get<std::string>()) {
+    check_length(text->size(), name.where);
+    return *text;
+  }
+  term_ = call_value(datum, name);
+  return std::nullopt;
+}
+
+/// Whether the comparison of `text`, which was read, with the string that follows holds.
+bool Interpreter::compare_string(const std::string& text) {
+  const Token operation = peek();
+  const bool is_comparison = operation.is('<') || operation.is('>') || operation.is('=') || operation.is('!');
+  if (!is_comparison) fail_expected("a comparison behind a string", operation);
+  take();
+  const bool or_equal = operation.sign != '=' && pending_.empty() && *at_.p == '=';
+  if (operation.sign == '!' && !or_equal) fail_expected("an operator", operation);
+  if (or_equal) ++at_.p;
+  const int order = text.compare(parse_string());
+  if (operation.sign == '!') return order != 0;
+  if (operation.sign == '=' || (or_equal && order == 0)) return order == 0;
+  return operation.sign == '<' ? order < 0 : order > 0;
+}
+
 /// Comparisons, joined by `&` and `|`, which bind alike.
 Numbers Interpreter::parse_logic() {
   constexpr double tolerance = 1e-10;
   const Place where = peek().where;
   const auto compared = [&] {
-    Numbers value = parse_sum();
+    const std::optional<std::string> text = take_string();
+    Numbers value = text ? number(compare_string(*text)) : parse_sum();
     for (;;) {
       if (!next_is('<') && !next_is('>') && !next_is('=') && !next_is('!') && !next_is('#')) {
         if (pending_.empty() && !is_letter(*at_.p)) return value;

@@ -121,6 +121,8 @@ class Interpreter {
   // ---- Names
   Reference access(const Token& name);
   Reference variable(const Token& name, bool local);
+  /// The same as seen from a frame of this scope.
+  Reference variable(const Token& name, bool local, std::uint32_t scope);
   void bind(Name& name, std::uint32_t scope, Reference reference);
   const Datum& value_of(const Reference& reference, const Token& name);
   [[noreturn]] void undeclared(const Token& name);
@@ -137,6 +139,8 @@ class Interpreter {
   bool starts_value(const Token& token) const;
   Numbers parse_relation();
   Numbers parse_logic();
+  std::optional<std::string> take_string();
+  bool compare_string(const std::string& text);
   Numbers parse_sum();
   Numbers parse_product();
   Numbers parse_factor();

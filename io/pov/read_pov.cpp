@@ -11,6 +11,7 @@ std::vector<std::string> ReadOptions::default_library_folders() {
 
 Document read_pov(const std::string& path, const ReadOptions& options) {
   Document document;
+  if (options.queries != nullptr) options.queries->begin(document);
   Interpreter(options, document).run(path);
   return document;
 }

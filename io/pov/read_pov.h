@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,22 +23,27 @@ namespace oktett::pov {
 class ObjectQueries {
  public:
   using Point = std::array<double, 3>;
+  using BlockPointer = std::shared_ptr<const Block>;
   struct Hit {
     bool found = false;
     Point point{}, normal{};
   };
 
   virtual ~ObjectQueries() = default;
+  /// Called before the first question: `document`, which is being read, has the places of blocks.
+  virtual void begin(const Document& document);
+  /// How many steps (Limits::steps) the answers since the last call have taken.
+  virtual std::uint64_t take_steps();
   /// `inside(object, point)`
-  virtual std::optional<bool> inside(const Block& object, const Point& point);
+  virtual std::optional<bool> inside(const BlockPointer& object, const Point& point);
   /// `trace(object, origin, direction)`
-  virtual std::optional<Hit> trace(const Block& object, const Point& origin, const Point& direction);
+  virtual std::optional<Hit> trace(const BlockPointer& object, const Point& origin, const Point& direction);
   /// `min_extent(object)` and `max_extent(object)`
-  virtual std::optional<std::pair<Point, Point>> extent(const Block& object);
+  virtual std::optional<std::pair<Point, Point>> extent(const BlockPointer& object);
   /// `function { pigment { ... } }` at a point: red, green, blue, filter, transmit.
-  virtual std::optional<std::array<double, 5>> pigment(const Block& block, const Point& point);
+  virtual std::optional<std::array<double, 5>> pigment(const BlockPointer& block, const Point& point);
   /// `function { pattern { ... } }` at a point.
-  virtual std::optional<double> pattern(const Block& block, const Point& point);
+  virtual std::optional<double> pattern(const BlockPointer& block, const Point& point);
   /// `function { internal(N) }`, as functions.inc declares f_sphere and the others.
   virtual std::optional<double> internal(std::uint32_t number, std::span<const double> arguments);
   /// `vturbulence(lambda, omega, octaves, point)`
@@ -85,8 +91,8 @@ struct ReadOptions {
 /// Reads the scene at `path`. Throws Error, which names file, line, column and the macros on the way.
 Document read_pov(const std::string& path, const ReadOptions& options = {});
 
-/// The name of the option that allows #fopen, for messages.
-inline constexpr const char* kFileFolderOption = "file_folder";
+/// The option of commands that allows #fopen, for messages.
+inline constexpr const char* kFileFolderOption = "--files";
 
 /// The value of a function with one value, as expressions of the scene compute it.
 double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "io/pov/interpreter.h"
 
@@ -65,10 +66,23 @@ TextFile::TextFile(const std::string& folder, const std::string& name, Mode mode
 }
 
 TextFile::~TextFile() {
+  try {
+    flush();
+  } catch (const std::string&) {
+    // Nobody is left to be told.
+  }
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void TextFile::write(std::string_view text) {
+  constexpr std::size_t kMostUnwritten = 1 << 16;
+  unwritten_ += text;
+  if (unwritten_.size() > kMostUnwritten) flush();
+}
+
+void TextFile::flush() {
+  const std::string whole = std::exchange(unwritten_, {});
+  std::string_view text = whole;
   while (!text.empty()) {
     const ssize_t count = ::write(descriptor_, text.data(), text.size());
     if (count < 0 && errno == EINTR) continue;
@@ -78,6 +92,7 @@ void TextFile::write(std::string_view text) {
 }
 
 void TextFile::close() {
+  flush();
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
   closed_ = true;
@@ -186,7 +201,11 @@ TextFile& Interpreter::file_handle(const Token& token) {
 void Interpreter::close_file() {
   const Token name = take_written();
   if (name.kind == Token::Kind::word && name.name->datum() == nullptr) return;
-  file_handle(name).close();
+  try {
+    file_handle(name).close();
+  } catch (const std::string& problem) {
+    fail(name.where, "cannot write: " + problem);
+  }
   assign(name.name->bindings.back().value, {}, name.where);
 }
 
@@ -265,7 +284,7 @@ void Interpreter::write_file() {
       fail_expected("a number, a vector or a string", token);
     }
     try {
-      count_step(token.where, 10 + text.size() / 16);
+      count_step(token.where, 1 + text.size() / 16);
       file->write(text);
     } catch (const std::string& problem) {
       fail(token.where, "cannot write: " + problem);

@@ -24,17 +24,21 @@ class TextFile {
   /// The rest of a file that is read.
   std::string_view rest() const { return std::string_view(text_).substr(next_); }
   void skip(std::size_t count) { next_ += count; }
-  /// Throws what is wrong as a std::string.
+  /// Throws what is wrong as a std::string. Small pieces are written together, the last ones by close().
   void write(std::string_view text);
   /// What has been written or read so far, in bytes.
   std::size_t size() const { return text_.size(); }
+  /// Throws as write() does.
   void close();
 
  private:
+  void flush();
+
   Mode mode_;
   bool closed_ = false;
   int descriptor_ = -1;
   std::string text_;
+  std::string unwritten_;
   std::size_t next_ = 0;
 };
 

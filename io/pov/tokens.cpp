@@ -296,7 +296,7 @@ void Interpreter::call_macro(const Token& token, const std::shared_ptr<const Mac
       reference = Reference{std::make_shared<Datum>(parse_value()), {}};
     }
     arguments.push_back(std::move(reference));
-    if (!take_if(',') && !peek().is(')')) fail_expected("',' or ')' behind a value for " + what, peek());
+    take_if(',');  // which may be left out
   }
   take();
   hold_ = outer;

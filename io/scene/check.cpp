@@ -17,8 +17,8 @@ namespace {
 
 class Checking {
  public:
-  Checking(const std::string& path, const Definitions& definitions)
-      : path_(path), definitions_(definitions) {}
+  Checking(const std::string& path, const Definitions& definitions, const PovOptions& pov)
+      : path_(path), definitions_(definitions), pov_(pov) {}
 
   Findings run() {
     const std::string extension = lower_case_extension(path_);
@@ -58,6 +58,7 @@ class Checking {
     SceneLoad load(definitions_);
     ErrorList errors;
     load.errors = &errors;
+    load.pov = pov_;
     const FilesRead files;
     try {
       read_scene_file(path_, load);
@@ -145,13 +146,14 @@ class Checking {
 
   const std::string path_;
   const Definitions definitions_;
+  const PovOptions pov_;
   Findings found_;
 };
 
 }  // namespace
 
-Findings check_file(const std::string& path, const Definitions& definitions) {
-  return Checking(path, definitions).run();
+Findings check_file(const std::string& path, const Definitions& definitions, const PovOptions& pov) {
+  return Checking(path, definitions, pov).run();
 }
 
 }  // namespace oktett

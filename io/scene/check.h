@@ -29,6 +29,6 @@ struct Findings {
 /// which load_scene throws, is always there. Of OBJ files all lines are looked at; other mesh files end at
 /// the first error. In scene files it also warns of named materials, media and prototypes that nothing
 /// refers to. Throws Error only for wrong names in `definitions`.
-Findings check_file(const std::string& path, const Definitions& definitions = {});
+Findings check_file(const std::string& path, const Definitions& definitions = {}, const PovOptions& pov = {});
 
 }  // namespace oktett

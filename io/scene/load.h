@@ -74,7 +74,7 @@ struct SceneLoad {
 
   Scene scene;
   const Definitions definitions;
-  Film pov_film = kPovFilm;  ///< the size that a scene in POV-Ray's language finds
+  PovOptions pov;  ///< of scenes in POV-Ray's language
   SceneParameters parameters;
   SceneValues values;
   MeshLibrary meshes;

@@ -18,10 +18,9 @@ struct TranslatedScene;
 bool is_pov_file(const std::string& path);
 
 /// The tree of the scene file that says what such a scene does. `definitions` are declared as numbers or, if
-/// they are none, strings before the scene begins. `film`: its size, which the scene may ask for. Names of
-/// meshes begin with `mesh_prefix`. Throws Error.
-pov::TranslatedScene read_pov_tree(const std::string& path, const Definitions& definitions, const Film& film,
-                                   const std::string& mesh_prefix = "");
+/// they are none, strings before the scene begins. Names of meshes begin with `mesh_prefix`. Throws Error.
+pov::TranslatedScene read_pov_tree(const std::string& path, const Definitions& definitions,
+                                   const PovOptions& options, const std::string& mesh_prefix = "");
 
 /// What a conversion has written and could not say.
 struct PovConversion {
@@ -31,6 +30,6 @@ struct PovConversion {
 
 /// Writes a scene in POV-Ray's language as a scene file, its meshes as PLY files beside it. Throws Error.
 PovConversion convert_pov(const std::string& input, const std::string& output, const Definitions& definitions,
-                          const Film& film = kPovFilm);
+                          const PovOptions& options = {});
 
 }  // namespace oktett

@@ -117,6 +117,10 @@ void warn_of_insides(Scene& scene);
 /// Reads a scene file with all that it includes. Throws Error; where errors are gathered, keeps them in
 /// `load.errors`.
 void read_scene_file(const std::string& path, SceneLoad& load);
+/// A scene of the sections of a tree that was not read from a file, with the meshes that the tree names.
+/// Throws Error.
+Scene read_scene_tree(const YamlNode& root,
+                      const std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes);
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
 std::string lights_schema(Schema& schema);

@@ -199,6 +199,17 @@ class FileReader {
     chain_.pop_back();
   }
 
+  void read_sections(const YamlNode& root) {
+    if (root.kind != YamlKind::map)
+      throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
+    SceneKeys keys{load_.scene,
+                   {[this](SceneLoad&, const YamlNode& node) { read_includes(node); }, {}, true}};
+    const Fields fields(root, keys.kMap, KeyList(keys).keys);
+    if (!fields["oktett"]) report(root, "the format version is missing: expected 'oktett: 1'");
+    ParameterReader reader(load_, root, fields);
+    keys.describe(reader);
+  }
+
  private:
   struct Link {
     std::string path, canonical;
@@ -220,22 +231,11 @@ class FileReader {
 
   /// A scene in POV-Ray's language.
   void read_pov(const std::string& path) {
-    pov::TranslatedScene translated = read_pov_tree(path, load_.definitions, load_.pov_film);
+    pov::TranslatedScene translated = read_pov_tree(path, load_.definitions, load_.pov);
     for (const std::unique_ptr<YamlFile>& file : translated.files) file->errors = load_.errors;
     for (const auto& [name, mesh] : translated.meshes) load_.meshes.add(name, mesh);
     for (const Warning& warning : translated.warnings) load_.warn(warning.where, warning.message);
     read_sections(*translated.root);
-  }
-
-  void read_sections(const YamlNode& root) {
-    if (root.kind != YamlKind::map)
-      throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
-    SceneKeys keys{load_.scene,
-                   {[this](SceneLoad&, const YamlNode& node) { read_includes(node); }, {}, true}};
-    const Fields fields(root, keys.kMap, KeyList(keys).keys);
-    if (!fields["oktett"]) report(root, "the format version is missing: expected 'oktett: 1'");
-    ParameterReader reader(load_, root, fields);
-    keys.describe(reader);
   }
 
   void read_includes(const YamlNode& node) {
@@ -334,11 +334,21 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 
+Scene read_scene_tree(const YamlNode& root,
+                      const std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes) {
+  SceneLoad load{Definitions{}};
+  for (const auto& [name, mesh] : meshes) load.meshes.add(name, mesh);
+  FileReader(load).read_sections(root);
+  resolve_light_lists(load);
+  recentre(load.scene);
+  return std::move(load.scene);
+}
+
 static Scene load_scene_file(const std::string& path, const Definitions& definitions,
                              std::optional<IntegratorKind> integrator, const GltfOptions& gltf,
-                             const Film& pov_film = kPovFilm) {
+                             const PovOptions& pov = {}) {
   SceneLoad load(definitions);
-  load.pov_film = pov_film;
+  load.pov = pov;
   load.gltf = gltf;
   load.integrator = integrator;
   read_scene_file(path, load);
@@ -425,11 +435,11 @@ Scene load_scene(const std::string& path, const Definitions& definitions) {
 }
 
 Scene load_scene(const std::string& path, const Definitions& definitions,
-                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf, const Film& pov_film) {
+                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf, const PovOptions& pov) {
   expect_readable(path);
   const std::string extension = lower_case_extension(path);
   if (extension == ".yaml" || extension == ".yml" || is_pov_file(path))
-    return load_scene_file(path, definitions, integrator, gltf, pov_film);
+    return load_scene_file(path, definitions, integrator, gltf, pov);
   if (!is_mesh_file(path))
     throw Error(Location{path, 0, 0},
                 std::string("unknown kind of file; expected a scene (.yaml, .yml, .pov) or a mesh (") +

@@ -30,14 +30,19 @@ inline const Film kPovFilm = [] {
   return film;
 }();
 
+/// What a scene in POV-Ray's language finds.
+struct PovOptions {
+  Film film = kPovFilm;  ///< its size
+  std::string files;     ///< the only folder whose files its #fopen reads and writes; empty: none
+};
+
 /// Calls load_scene_file for .yaml and .yml, reads .pov in POV-Ray's language, and calls scene_from_mesh for
 /// mesh files; throws Error for any other extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
 /// The same with another integrator, if it is given, which is also what is warned of. `gltf`: what is shown
 /// of the glTF file that `path` names, or of those that a scene file includes; throws Error for other meshes.
-/// `pov_film`: the size that a scene in POV-Ray's language finds.
 Scene load_scene(const std::string& path, const Definitions& definitions,
                  std::optional<IntegratorKind> integrator, const GltfOptions& gltf = {},
-                 const Film& pov_film = kPovFilm);
+                 const PovOptions& pov = {});
 
 }  // namespace oktett

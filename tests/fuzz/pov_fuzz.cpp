@@ -10,17 +10,17 @@ using namespace oktett;
 
 /// Answers everything with a number, so that no question ends the reading.
 class Answers final : public pov::ObjectQueries {
-  std::optional<bool> inside(const pov::Block&, const Point& p) override { return p[0] > 0; }
-  std::optional<Hit> trace(const pov::Block&, const Point& origin, const Point& direction) override {
+  std::optional<bool> inside(const BlockPointer&, const Point& p) override { return p[0] > 0; }
+  std::optional<Hit> trace(const BlockPointer&, const Point& origin, const Point& direction) override {
     return Hit{true, origin, direction};
   }
-  std::optional<std::pair<Point, Point>> extent(const pov::Block&) override {
+  std::optional<std::pair<Point, Point>> extent(const BlockPointer&) override {
     return {{{0, 0, 0}, {1, 1, 1}}};
   }
-  std::optional<std::array<double, 5>> pigment(const pov::Block&, const Point& p) override {
+  std::optional<std::array<double, 5>> pigment(const BlockPointer&, const Point& p) override {
     return {{p[0], p[1], p[2], 0, 0}};
   }
-  std::optional<double> pattern(const pov::Block&, const Point& p) override { return p[0]; }
+  std::optional<double> pattern(const BlockPointer&, const Point& p) override { return p[0]; }
   std::optional<double> internal(std::uint32_t number, std::span<const double> a) override {
     return a.empty() ? number : a[0];
   }

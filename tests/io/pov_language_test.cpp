@@ -22,17 +22,19 @@ using Cases = std::vector<std::pair<std::string, std::string>>;
 /// Answers for the unit sphere, whatever the object.
 class UnitSphere final : public pov::ObjectQueries {
  public:
-  std::optional<bool> inside(const Block&, const Point& p) override {
+  std::optional<bool> inside(const BlockPointer&, const Point& p) override {
     return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 1;
   }
-  std::optional<Hit> trace(const Block&, const Point&, const Point&) override {
+  std::optional<Hit> trace(const BlockPointer&, const Point&, const Point&) override {
     return Hit{true, {0, 0, -1}, {0, 0, -1}};
   }
-  std::optional<std::pair<Point, Point>> extent(const Block&) override { return {{{-1, -1, -1}, {1, 1, 1}}}; }
-  std::optional<std::array<double, 5>> pigment(const Block&, const Point& p) override {
+  std::optional<std::pair<Point, Point>> extent(const BlockPointer&) override {
+    return {{{-1, -1, -1}, {1, 1, 1}}};
+  }
+  std::optional<std::array<double, 5>> pigment(const BlockPointer&, const Point& p) override {
     return {{p[0], p[0], p[0], 0, 0}};
   }
-  std::optional<double> pattern(const Block&, const Point& p) override { return p[0]; }
+  std::optional<double> pattern(const BlockPointer&, const Point& p) override { return p[0]; }
   std::optional<double> internal(std::uint32_t number, std::span<const double> a) override {
     return number + a[0];
   }
@@ -332,6 +334,59 @@ TEST(PovLanguage, RedIsDecodedFromSrgb) {
             "0.033105,1.000000,0.003096");
 }
 
+// By POV-Ray 3.7.0.10, too.
+TEST(PovLanguage, StringsAreCompared) {
+  EXPECT_EQ(debug_of("#declare S = \"x\"; #if (S = \"x\" & S != \"y\") #debug \"a\" #end "
+                     "#if (\"abc\" < \"abd\") #debug \"b\" #end #if (\"abc\" = \"ABC\") #debug \"c\" #end "
+                     "#if (concat(\"a\", S) >= \"ax\") #debug \"d\" #end"),
+            "abd");
+  EXPECT_EQ(debug_of("#declare A = array[2] {\"p\", \"q\"} #macro M(s) #if (s != \"\") #debug s #end #end "
+                     "M(A[1]) M(\"\") #if (A[0] < A[1] & 1 < 2) #debug \"!\" #end"),
+            "q!");
+  EXPECT_EQ(error_of("#if (\"a\") #end"), "a.pov:1:9: expected a comparison behind a string, found ')'");
+  EXPECT_EQ(error_of("#if (\"a\" = 1) #end"), "a.pov:1:12: expected a string, found the number 1");
+  EXPECT_EQ(error_of("#declare S = \"a\"; #if (1 = S) #end"),
+            "a.pov:1:28: expected a number, a vector or a colour, found 'S', which is a string");
+}
+
+// By POV-Ray 3.7.0.10, too.
+TEST(PovLanguage, ValuesMayEndInTheTextOfAMacro) {
+  // The ';' ends the declaration, and what it declares stands outside of the macro.
+  EXPECT_EQ(debug_of("#macro V() #local Q = 3; Q; #end #declare Q = V() #debug str(Q, 0, 0) "
+                     "#macro W() #local R = V() #debug str(R, 0, 0) #end W()"),
+            "33");
+  EXPECT_EQ(
+      debug_of("#macro V(A) #if (A) A; #else 7; #end #end #macro W() #local R = V(0) #local R = R + V(2) "
+               "#debug str(R, 0, 0) #end W() #ifdef (R) #debug \"left\" #end"),
+      "9");
+}
+
+TEST(PovLanguage, WhatPovRayIsLenientWith) {
+  // Commas between the values of a macro, a '#' without a directive, the texture that a macro is given at
+  // once.
+  EXPECT_EQ(debug_of("#macro M(A, B) #debug str(A - B.x, 0, 0) #end M(5 <2,0,0>)"), "3");
+  EXPECT_EQ(read("camera { look_at <0,2,0>#\n}").document.statements.size(), 1u);
+  const Document document =
+      read("#macro M(T) sphere { 0, 1 texture { T } } #end #declare T = texture { pigment { rgb 1 } }\nM(T)")
+          .document;
+  EXPECT_EQ(document.statements.size(), 1u);
+  EXPECT_EQ(error_of("#macro M(A) #end M(5"),
+            "a.pov:1:21: expected ')', as macro 'M' takes 1 value, found the end of the file");
+}
+
+TEST(PovLanguage, EntriesWithoutANumberHaveTheWeightOne) {
+  const Document document = read(
+                                "pigment { average pigment_map { [function { x } color_map { [0 rgb 0] }] "
+                                "[2 rgb 1] } }")
+                                .document;
+  const auto inner = [](const Element& e) { return std::get<std::shared_ptr<const Block>>(e.value); };
+  const auto map = inner(inner(document.statements.at(0))->elements.at(1));
+  const auto first = inner(map->elements.at(0)), second = inner(map->elements.at(1));
+  ASSERT_EQ(first->elements.size(), 3u);
+  EXPECT_EQ(std::get<Numbers>(first->elements[0].value).v[0], 1);
+  EXPECT_EQ(std::get<Numbers>(second->elements.at(0).value).v[0], 2);
+}
+
 TEST(PovLanguage, QuestionsGoToTheCaller) {
   UnitSphere sphere;
   ReadOptions options;
@@ -382,7 +437,7 @@ TEST(PovLanguage, ErrorsNameThePlace) {
       {"#include \"nope.inc\"",
        "1:1: cannot include 'nope.inc': no such file beside 'a.pov' or in a library folder"},
       {"#fopen F \"a\" read",
-       "1:8: #fopen is not allowed: the option file_folder names a folder for files of scenes"},
+       "1:8: #fopen is not allowed: the option --files names a folder for files of scenes"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), "a.pov:" + message) << text;
 }

@@ -23,7 +23,7 @@ using test::TempDir;
 class PovFiles {
  public:
   pov::TranslatedScene translate(const std::string& text) const {
-    return read_pov_tree(dir.write("scene.pov", text), {}, kPovFilm);
+    return read_pov_tree(dir.write("scene.pov", text), {}, {});
   }
   /// The value of a key of the top level in one line.
   std::string section(const std::string& text, const std::string& key) const {
@@ -386,6 +386,45 @@ TEST(PovScene, ConvertedScenesShowTheSame) {
     ASSERT_NE(other, nullptr);
     EXPECT_TRUE(std::ranges::equal(plane.values, other->values)) << plane.name;
   }
+}
+
+TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
+  const PovFiles files;
+  const std::string end = " contained_by { box { -1, 1 } } }";
+  const auto text = [&](const std::string& declared, const std::string& function) {
+    return files.object("#version 3.7;\n" + declared + "isosurface { function { " + function + " }" + end);
+  };
+  EXPECT_NE(
+      text("#declare F = function { internal(17) } ", "F(x, y, z, 1, 2, 3) - 1").find("sqrt(((1) * (x))^2"),
+      std::string::npos);
+  // A curve that is turned about the y axis, and the same as it is.
+  EXPECT_NE(
+      text("#declare F = function { internal(15) } ", "F(x, y, z, -1, 0.25, 0.3, 1, 0, 0)").find("hypot"),
+      std::string::npos);
+  EXPECT_EQ(
+      text("#declare F = function { internal(15) } ", "F(x, y, z, -1, 0.25, 0.3, 0, 0, 0)").find("hypot"),
+      std::string::npos);
+  EXPECT_NE(text("#declare F = function { transform { translate <1, 2, 3> } } ", "F(x, y, z).y")
+                .find("(2 + 1 * y)"),
+            std::string::npos);
+  EXPECT_EQ(
+      files.warnings(
+          "#version 3.7;\n#declare F = function { internal(76) } isosurface { function { F(x, y, z) }" + end),
+      "scene.pov:2:40: warning: this function contains noise (f_noise3d or f_noise_generator), which "
+      "expressions here do not have; the object is left out\n");
+}
+
+TEST(PovScene, WhatIsAskedStandsWhereItWasFound) {
+  const PovFiles files;
+  EXPECT_EQ(files.object("#version 3.7;\n#declare B = box { -1, 1 } #declare N = <0,0,0>;\n"
+                         "#declare P = trace(B, <0.5,9,0.25>, -y, N); sphere { P + N, 0.5 }"),
+            "{sphere: {center: [0.5, 2, 0.25], radius: 0.5}}");
+}
+
+TEST(PovScene, CombinationsOfNothingAreLeftOut) {
+  const PovFiles files;
+  EXPECT_EQ(files.warnings("#version 3.7;\nunion { } sphere { 0, 1 }"),
+            "scene.pov:2:1: warning: 'union' contains no object, and is left out\n");
 }
 
 }  // namespace

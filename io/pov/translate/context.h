@@ -2,6 +2,7 @@
 /// \file What all parts of the translation share: the document, the tree that is made of it, and what cannot
 /// be said in a scene file. Within io/ only.
 
+#include <array>
 #include <map>
 #include <memory>
 #include <set>
@@ -29,6 +30,9 @@ struct Context {
   Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr;
   std::string mesh_prefix;
   double gamma = 1;  ///< in which light is computed
+  /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
+  /// declaration.
+  std::map<const Block*, std::array<Vec3d, 2>> extents;
 
   /// Warns of what is not as POV-Ray has it, once for each `kind`.
   void tell(const std::string& kind, const Place& where, const std::string& message) {

@@ -143,6 +143,8 @@ Extent shape_extent(Context& context, Arguments& a) {
 }  // namespace
 
 Extent extent_of(Context& context, const Block& block) {
+  if (const auto known = context.extents.find(&block); known != context.extents.end())
+    return {known->second[0], known->second[1]};
   Arguments a(context, block);
   Extent extent = shape_extent(context, a);
   if (has_word(block, "inverse")) extent = {};
@@ -156,6 +158,7 @@ Extent extent_of(Context& context, const Block& block) {
     if (inner != nullptr && inner->keyword == "clipped_by") extent = extent.meet(extent_of(context, *inner));
     a.take();
   }
+  if (!block.name.empty()) context.extents.emplace(&block, std::array{extent.lo, extent.hi});
   return extent;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <exception>
 
+#include "io/pov/internal_functions.h"
+#include "io/pov/read_pov.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett::pov {
@@ -70,22 +72,10 @@ constexpr Formula kFormulas[] = {
     {"radians", "({0} * pi / 180)"},
 };
 
-/// The functions of functions.inc by their numbers that are plain formulas.
-struct Internal {
-  std::uint32_t number;
-  const char* text;
-};
-constexpr Internal kInternal[] = {
-    {57, "sqrt(({0})^2 + ({1})^2 + ({2})^2)"},
-    {61, "(sqrt(({0})^2 + ({1})^2 + ({2})^2) - {3})"},
-    {69, "atan2({0}, {2})"},
-    {70, "(hypot(hypot({0}, {2}) - {3}, {1}) - {4})"},
-};
-
 class Writer {
  public:
-  Writer(const Function& function, std::vector<std::string> parameters, int depth)
-      : function_(function), parameters_(std::move(parameters)), depth_(depth) {}
+  Writer(const Function& function, std::vector<std::string> parameters, const Document& document, int depth)
+      : function_(function), parameters_(std::move(parameters)), document_(document), depth_(depth) {}
 
   std::string text() {
     if (function_.nodes.empty()) throw Unwritable{"an empty function"};
@@ -111,23 +101,40 @@ class Writer {
       case Op::call:
         return call(node.name, operands);
       case Op::internal:
-        for (const Internal& known : kInternal)
-          if (known.number == node.index) return fill(known.text, operands);
-        throw Unwritable{
-            fmt::format("a function of functions.inc that has no formula here ({})",
-                        function_.name.empty() ? fmt::format("internal({})", node.index) : function_.name)};
+        return internal(node.index, operands);
       case Op::user:
         if (node.function == nullptr) throw Unwritable{"an unknown function"};
         operands.resize(std::max(operands.size(), node.function->parameters.size()), "0");
-        return Writer(*node.function, operands, depth_ + 1).text();
+        return Writer(*node.function, operands, document_, depth_ + 1).text();
       case Op::spline:
         throw Unwritable{"a spline"};
       case Op::pattern:
         throw Unwritable{"a pattern"};
       case Op::transform:
-        throw Unwritable{"a transform"};
+        return transformed(node, operands);
     }
     throw Unwritable{"an unknown step"};
+  }
+
+  std::string internal(std::uint32_t number, const std::vector<std::string>& operands) const {
+    if (number == kNoiseFunction || number == kNoiseGeneratorFunction)
+      throw Unwritable{"noise (f_noise3d or f_noise_generator)"};
+    if (std::optional<std::string> text = internal_text(number, operands)) return *text;
+    throw Unwritable{
+        fmt::format("a function of functions.inc that has no formula here ({})",
+                    function_.name.empty() ? fmt::format("internal({})", number) : function_.name)};
+  }
+
+  /// A component of a place that a transform has moved.
+  std::string transformed(const FunctionNode& node, const std::vector<std::string>& operands) const {
+    if (node.block == nullptr || operands.size() < 3 || node.index > 2)
+      throw Unwritable{"an unknown transform"};
+    const Matrix matrix = evaluate_transform(*node.block, document_);
+    std::string sum = number_of(matrix[3][node.index]);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (matrix[i][node.index] != 0)
+        sum += fmt::format(" + {} * {}", number_of(matrix[i][node.index]), operands[i]);
+    return "(" + sum + ")";
   }
 
   static std::string call(std::string_view name, const std::vector<std::string>& operands) {
@@ -164,6 +171,7 @@ class Writer {
 
   const Function& function_;
   std::vector<std::string> parameters_;
+  const Document& document_;
   int depth_;
   std::vector<std::string> texts_;
 };
@@ -173,7 +181,7 @@ class Writer {
 std::optional<std::string> function_text(Context& context, const Function& function, const Place& where,
                                          double threshold) {
   try {
-    std::string text = Writer(function, {"x", "y", "z"}, 0).text();
+    std::string text = Writer(function, {"x", "y", "z"}, context.document, 0).text();
     if (threshold != 0) text += fmt::format(" - {}", number_of(threshold));
     parse_expression(text, std::array<std::string_view, 3>{"x", "y", "z"});
     return text;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "core/far_mesh.h"
 #include "io/pov/translate/extent.h"
@@ -288,7 +289,12 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
   };
   MeshMaker mesh;
   fill(std::move(flat), [&](PlainPoint p, PlainPoint q, PlainPoint r) {
-    mesh.add({MeshCorner{lift(p)}, MeshCorner{lift(q)}, MeshCorner{lift(r)}});
+    // As triangles of meshes, which have their fronts on the other side than polygons.
+    std::array<MeshCorner, 3> corners{MeshCorner{lift(p)}, MeshCorner{lift(q)}, MeshCorner{lift(r)}};
+    const Vec3d face =
+        cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
+    if (dot(face, normal) > 0) std::swap(corners[1], corners[2]);
+    mesh.add(std::move(corners));
   });
   return MadeMesh{{{mesh, nullptr}}, false};
 }
@@ -328,7 +334,7 @@ MadeMesh make_patch(Context& context, Arguments& a) {
         along_u = along_u + p[m][n] * (wv[m] * du[n]), along_v = along_v + p[m][n] * (dv[m] * wu[n]);
       }
     MeshCorner c{at};
-    const Vec3d normal = cross(along_u, along_v);
+    const Vec3d normal = cross(along_v, along_u);
     if (length(normal) > 1e-12) c.normal = normal / length(normal);
     c.uv = {u, v};
     return c;

@@ -28,8 +28,11 @@ struct ObjectWriter::Modifiers {
   bool hides() const { return no_shadow || no_image || no_reflection; }
 };
 
-ObjectWriter::ObjectWriter(Context& context) : context_(context), wardrobe_(context) {
-  for (const Element& statement : context.document.statements)
+ObjectWriter::ObjectWriter(Context& context) : ObjectWriter(context, context.document.statements) {}
+
+ObjectWriter::ObjectWriter(Context& context, std::span<const Element> shown)
+    : context_(context), wardrobe_(context) {
+  for (const Element& statement : shown)
     if (const auto* const block = std::get_if<std::shared_ptr<const Block>>(&statement.value))
       count_uses(*block);
 }
@@ -60,6 +63,7 @@ int ObjectWriter::weight(const Block& block) {
 }
 
 bool ObjectWriter::is_dressed(const Block& block) {
+  if (const auto known = dressed_.find(&block); known != dressed_.end()) return known->second;
   bool any_child = false, all = true;
   for (const Element& e : block.elements) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
@@ -68,15 +72,19 @@ bool ObjectWriter::is_dressed(const Block& block) {
     if (k == "texture" || k == "pigment" || k == "material" || k == "finish") return true;
     if (is_object(k)) any_child = true, all &= is_dressed(**inner);
   }
+  if (!block.name.empty()) dressed_[&block] = any_child && all;
   return any_child && all;
 }
 
 bool ObjectWriter::has_light(const Block& block) {
-  return std::ranges::any_of(block.elements, [](const Element& e) {
+  if (const auto known = lit_.find(&block); known != lit_.end()) return known->second;
+  const bool lit = std::ranges::any_of(block.elements, [this](const Element& e) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     return inner != nullptr && *inner != nullptr &&
            ((*inner)->keyword == "light_source" || (is_object((*inner)->keyword) && has_light(**inner)));
   });
+  if (!block.name.empty()) lit_[&block] = lit;
+  return lit;
 }
 
 void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
@@ -108,6 +116,17 @@ void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& m
   Tree::push(context_.objects, node);
 }
 
+ObjectWriter::Asked ObjectWriter::add_asked(const std::shared_ptr<const Block>& block, bool as_solid) {
+  Outer outer;
+  outer.operand = as_solid;
+  asked_ = true;
+  const Maybe built = build(block, outer);
+  asked_ = false;
+  if (!built || built->node == nullptr || (as_solid && !built->solid)) return {};
+  Tree::push(context_.objects, built->node);
+  return {true, built->solid, built->negative};
+}
+
 void ObjectWriter::add_light(const std::shared_ptr<const Block>& block, const Affine& to_world) {
   const LightBody body = pov::add_light(context_, *block, to_world);
   if (!body.object) return;
@@ -122,8 +141,8 @@ ObjectWriter::Maybe ObjectWriter::build(const std::shared_ptr<const Block>& bloc
   const bool is_shared =
       !hidden_ && !block->name.empty() && uses_.contains(block.get()) && uses_.at(block.get()) > 1;
   if (is_shared && !has_light(*block)) {
-    const bool dressed = is_dressed(*block);
-    const bool keeps_look = dressed || (!outer.dress.has_texture() && outer.dress.interior == nullptr);
+    const bool keeps_look =
+        asked_ || is_dressed(*block) || (!outer.dress.has_texture() && outer.dress.interior == nullptr);
     const int least = outer.operand ? kOperandWeight : kInstanceWeight;
     if (keeps_look && weight(*block) >= least) return build_instance(block, outer);
   }
@@ -176,7 +195,10 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
   }
   Arguments behind(context_, rest);
   const Modifiers m = read_modifiers(block, behind);
-  if (children.empty()) context_.fail(block.where, fmt::format("'{}' contains no object", k));
+  if (children.empty()) {
+    context_.warn(block.where, fmt::format("'{}' contains no object, and is left out", k));
+    return std::nullopt;
+  }
   return build_children(block, children, m, outer);
 }
 
@@ -273,8 +295,9 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
     own.to_texture = own.to_texture * shape.first.all;
     const Node node = tree.map(block.where, shape.key, shape.value);
     tree.put(node, "material",
-             hidden_ || shape.invisible ? wardrobe_.invisible(block.where)
-                                        : wardrobe_.material(own, outer.default_texture, block.where));
+             hidden_ || asked_ || shape.invisible
+                 ? wardrobe_.invisible(block.where)
+                 : wardrobe_.material(own, outer.default_texture, block.where));
     Moves all = shape.first;
     if (single && m.clips.empty()) all.add(m.moves);
     if (const Node transform = moves_node(tree, block.where, all)) tree.put(node, "transform", transform);
@@ -298,7 +321,7 @@ std::vector<ObjectWriter::Built> ObjectWriter::build_all(
   std::vector<Built> built;
   for (const auto& child : children) {
     if (child->keyword == "light_source") {
-      add_light(child, outer.to_world);
+      if (!asked_) add_light(child, outer.to_world);
       continue;
     }
     Maybe part = build(child, outer);
@@ -387,9 +410,9 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
         cutters.push_back(*cutter);
     Outer inside;
     inside.operand = true, inside.default_texture = outer.default_texture;
-    hidden_ = true;
+    const bool was_hidden = std::exchange(hidden_, true);
     std::vector<Built> parts = build_all(cutters, inside);
-    hidden_ = false;
+    hidden_ = was_hidden;
     std::erase_if(parts, [](const Built& b) { return !b.node; });
     if (parts.empty()) continue;
     Built cutter = parts.size() == 1 ? parts[0] : combine(clip.block->where, "intersection", parts);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,22 @@ namespace oktett::pov {
 class ObjectWriter {
  public:
   explicit ObjectWriter(Context& context);
+  /// `shown`: all that will be added, which tells what is shown more than once.
+  ObjectWriter(Context& context, std::span<const Element> shown);
 
   /// Adds an object of the scene, `moves` after its own transforms. `casts_shadow` of false hides it from
   /// rays to lights.
   void add(const std::shared_ptr<const Block>& block, const Moves& moves = {}, bool casts_shadow = true);
   void add_light(const std::shared_ptr<const Block>& block, const Affine& to_world);
+
+  /// What became of an object that is asked and not seen.
+  struct Asked {
+    bool is_there = false;  ///< something of it is left
+    bool solid = false;     ///< it has an inside
+    bool negative = false;  ///< it stands for all but what was added
+  };
+  /// Adds an object for questions, without its looks. `as_solid`: what has no inside is left out.
+  Asked add_asked(const std::shared_ptr<const Block>& block, bool as_solid);
 
  private:
   /// What an object stands in.
@@ -66,13 +78,15 @@ class ObjectWriter {
   int weight(const Block& block);
   /// Whether all of an object has a texture of its own.
   bool is_dressed(const Block& block);
-  static bool has_light(const Block& block);
+  bool has_light(const Block& block);
 
   Context& context_;
   bool hidden_ = false;  ///< what is built is not seen: it only cuts
+  bool asked_ = false;   ///< nothing is seen, so that looks do not matter
   Wardrobe wardrobe_;
   std::map<const Block*, int> uses_;
   std::map<const Block*, int> weights_;
+  std::map<const Block*, bool> dressed_, lit_;  ///< of what is declared: is_dressed, has_light
   struct Prototype {
     std::string name;  ///< empty: nothing is left of it
     bool solid = true;

@@ -135,6 +135,8 @@ std::optional<Shapes> make_text(Context& context, Arguments& a) {
     context.warn(where, "the text has no volume; it is left out");
     return std::nullopt;
   }
+  // The name may lack its extension.
+  if (font.find('.') == std::string::npos) font += ".ttf";
   const Node keys = tree.map(where);
   tree.put(keys, "font", tree.text(font_place, find_file(context, font_place, font)));
   tree.put(keys, "text", tree.text(where, text));

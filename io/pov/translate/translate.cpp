@@ -63,7 +63,57 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
   context.tell(std::string(k), block->where, fmt::format("'{}' has no meaning here, and is left out", k));
 }
 
+/// A tree without settings: of what its sections hold.
+void finish_parts(Context& context, TranslatedScene& out) {
+  Tree& tree = context.tree;
+  const Place top;
+  const Node root = tree.map(top);
+  tree.put(root, "oktett", tree.number(top, 1));
+  if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
+  if (!context.define->items.empty()) tree.put(root, "define", context.define);
+  tree.put(root, "objects", context.objects);
+  out.root = root;
+  out.files = tree.take();
+  out.meshes = std::move(context.meshes), out.warnings = std::move(context.warnings);
+}
+
+void begin_sections(Context& context) {
+  const Place top;
+  context.materials = context.tree.map(top), context.define = context.tree.map(top);
+  context.objects = context.tree.list(top), context.lights = context.tree.list(top);
+}
+
 }  // namespace
+
+TranslatedObject translate_object(const Document& document, const std::shared_ptr<const Block>& object,
+                                  bool as_solid) {
+  Context context(document);
+  begin_sections(context);
+  const Element shown{object->where, object};
+  ObjectWriter objects(context, {&shown, 1});
+  TranslatedObject out;
+  const ObjectWriter::Asked asked = objects.add_asked(object, as_solid);
+  out.is_there = asked.is_there, out.negative = asked.negative;
+  out.extent = extent_of(context, *object);
+  finish_parts(context, out.scene);
+  return out;
+}
+
+TranslatedScene translate_look(const Document& document, const std::shared_ptr<const Block>& look) {
+  Context context(document);
+  begin_sections(context);
+  context.gamma = gamma_of(document);
+  auto sphere = std::make_shared<Block>();
+  sphere->keyword = "sphere", sphere->where = look->where;
+  sphere->elements = {
+      {look->where, Numbers{{}, 3, false}}, {look->where, Numbers{{1}, 1, false}}, {look->where, look}};
+  const std::shared_ptr<const Block> shown = sphere;
+  const Element statement{look->where, shown};
+  ObjectWriter(context, {&statement, 1}).add(shown);
+  TranslatedScene out;
+  finish_parts(context, out);
+  return out;
+}
 
 TranslatedScene translate(const Document& document, const TranslateOptions& options) {
   Context context(document);
@@ -72,8 +122,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   context.mesh_prefix = options.mesh_prefix;
   Tree& tree = context.tree;
   const Place top;
-  context.materials = tree.map(top), context.define = tree.map(top);
-  context.objects = tree.list(top), context.lights = tree.list(top);
+  begin_sections(context);
   const Block* camera = nullptr;
   Surroundings s;
   ObjectWriter objects(context);

@@ -9,6 +9,7 @@
 
 #include "core/mesh.h"
 #include "io/pov/document.h"
+#include "io/pov/translate/extent.h"
 #include "io/yaml/yaml.h"
 
 namespace oktett::pov {
@@ -30,5 +31,22 @@ struct TranslateOptions {
 /// Throws Error for what cannot be meant. What scene files do not have is left out with a warning, one for
 /// each kind.
 TranslatedScene translate(const Document& document, const TranslateOptions& options = {});
+
+/// One object for questions about its shape.
+struct TranslatedObject {
+  TranslatedScene scene;  ///< without camera, lights and looks; of warnings only those of the object
+  bool is_there = false;  ///< something of it is left
+  bool negative = false;  ///< it stands for all but what is in the scene
+  Extent extent;          ///< what the statements of the object say of its bounds; infinite if nothing
+};
+
+/// `as_solid`: what has no inside is left out, and parts that stand for all but a solid are resolved. Throws
+/// Error as translate does.
+TranslatedObject translate_object(const Document& document, const std::shared_ptr<const Block>& object,
+                                  bool as_solid);
+
+/// A scene of one sphere about the origin that has this block `texture` or `pigment`. Of warnings only those
+/// of the look.
+TranslatedScene translate_look(const Document& document, const std::shared_ptr<const Block>& look);
 
 }  // namespace oktett::pov

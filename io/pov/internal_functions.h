@@ -1,0 +1,24 @@
+#pragma once
+/// \file The functions that functions.inc declares by a number, as formulas of their operands. Within io/
+/// only.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace oktett::pov {
+
+/// The numbers of f_noise3d and of f_noise_generator, which have no formula.
+inline constexpr std::uint32_t kNoiseFunction = 76, kNoiseGeneratorFunction = 78;
+
+/// The function as an expression (kernels/functions/expression.h) of its operands, which are expressions,
+/// too. Nothing if it has no formula here, or if the operands are too few. Functions with a field strength
+/// have no bounds, which do not move surfaces.
+std::optional<std::string> internal_text(std::uint32_t number, const std::vector<std::string>& operands);
+
+/// The value of the function, which those with a field strength keep between -10 and 10. Nothing as above.
+std::optional<double> internal_value(std::uint32_t number, std::span<const double> operands);
+
+}  // namespace oktett::pov
