@@ -212,7 +212,10 @@ static Vec3d curved_direction(const CurvedView& c, Projection projection, double
       const double form = c.width / c.height, scale = 1 / std::min(form, kWidest);
       const double x = 2 * u * scale * form, y = 2 * v * scale + std::max(0.0, 1 - scale);
       const double r = std::sqrt(x * x + y * y), r2 = r * r;
-      return r <= 1 ? dome(x, y, r, r * (1.41127 + r2 * (-0.09438 + r2 * 0.25674))) : Vec3d{0, 0, 0};
+      const double from_axis = r * (1.41127 + r2 * (-0.09438 + r2 * 0.25674));
+      // The lower edge is the great circle that lies an eighth of a turn below the axis.
+      const bool too_low = y < 0 && sin(from_axis) * y + cos(from_axis) * r < 0;
+      return r <= 1 && !too_low ? dome(x, y, r, from_axis) : Vec3d{0, 0, 0};
     }
     case Projection::panoramic: {
       const double a = std::numbers::pi * u;

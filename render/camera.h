@@ -29,7 +29,8 @@ PixelWindow crop_window(const Film& film);
 /// - fisheye: cos(r A / 2) Z + sin(r A / 2) (2 u w X + 2 v h Y) / r, where r = |(2 u w, 2 v h)| <= 1
 /// - ultra_wide_angle: sin a X + sin b Y + cos a cos b Z, where a = u A, b = v A h / w
 /// - omnimax: as fisheye, of the angle 1.41127 r - 0.09438 r^3 + 0.25674 r^5 from Z for
-///   r = |(2 u s w / h, 2 v s + max(0, 1 - s))| <= 1, where s = max(h / w, 0.77915)
+///   r = |(2 u s w / h, 2 v s + max(0, 1 - s))| <= 1, where s = max(h / w, 0.77915), above the great circle
+///   through X and Z - Y
 /// - panoramic: sin(pi u) w X + tan(pi v) h Y + cos(pi u) l Z
 /// - cylindrical: sin(u A) X + v h Y + cos(u A) Z, orthographic along the axis without the second term, from
 ///   v h Y beside the eye; about the axis `right` with X and u in place of Y and v

@@ -5,8 +5,8 @@
 
 namespace oktett {
 
-/// Light that grows less with the distance r from the emitter by 2 / (1 + (r / distance)^power): twice the light
-/// at the emitter, once at `distance`.
+/// Light that grows less with the distance r from the emitter by 2 / (1 + (r / distance)^power): twice the
+/// light at the emitter, once at `distance`.
 struct LightFade {
   double distance = 0;  ///< 0: it does not fade
   double power = 2;

@@ -21,9 +21,8 @@ inline float tight_share(double cosine, double tightness) {
 /// The part of the light of a beam at the distance `r` from its line.
 inline float beam_share(const LightBeam& beam, double r) {
   if (!(r < beam.outer_radius)) return 0;
-  const double t = r <= beam.inner_radius
-                       ? 1
-                       : (beam.outer_radius - r) / (beam.outer_radius - beam.inner_radius);
+  const double t =
+      r <= beam.inner_radius ? 1 : (beam.outer_radius - r) / (beam.outer_radius - beam.inner_radius);
   return static_cast<float>(t * t * (3 - 2 * t)) * tight_share(1 - r / beam.outer_radius, beam.tightness);
 }
 

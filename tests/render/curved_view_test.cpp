@@ -1,4 +1,5 @@
-// Curved projections: where they look, against POV-Ray's pictures, other pictures and the inverse projections.
+// Curved projections: where they look, against POV-Ray's pictures, other pictures and the inverse
+// projections.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +24,8 @@ Film film(std::uint32_t width, std::uint32_t height) {
   return f;
 }
 
-/// A camera and what POV-Ray 3.7.0.10 shows at four pixels of 33 x 25: places on a ball around the eye that is
-/// coloured by place, in 16 bits. Zero: no ray.
+/// A camera and what POV-Ray 3.7.0.10 shows at four pixels of 33 x 25: places on a ball around the eye that
+/// is coloured by place, in 16 bits. Zero: no ray.
 struct Shown {
   struct {
     Projection projection;
@@ -37,54 +38,93 @@ struct Shown {
 
 const std::vector<Shown>& shown_by_povray() {
   static const std::vector<Shown> all{
-    // fisheye angle 120 right 4/3*x
-    {{Projection::fisheye, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::up},
-     {{0.5996, 0.4452, 0.6651}, {0, 0, 0}, {0.0000, 0.6846, 0.7290}, {-0.6496, -0.5002, 0.5725}}},
-    // fisheye angle 300 right 1.5*x up 0.8*y direction 2*z
-    {{Projection::fisheye, {{1.5, 0, 0}, {0, 0.8, 0}, {0, 0, 2}}, {300, 0}, CylinderAxis::up},
-     {{0.7386, 0.3900, -0.5500}, {0, 0, 0}, {0.0000, 0.9980, 0.0628}, {-0.5647, -0.3092, -0.7652}}},
-    // fisheye angle 120 right x matrix <1,0,0,0.5,1,0,0,0,1,0,0,0>
-    {{Projection::fisheye, {{1, 0, 0}, {0.5, 1, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::up},
-     {{0.6260, 0.4145, 0.6606}, {0.7346, 0.0000, 0.6785}, {0.3339, 0.6678, 0.6653}, {-0.6770, -0.4593, 0.5751}}},
-    // ultra_wide_angle angle 220 right 1.5*x
-    {{Projection::ultra_wide_angle, {{1.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {220, 0}, CylinderAxis::up},
-     {{0.7281, 0.5232, 0.4429}, {0.9983, 0.0000, 0.0581}, {0.0000, 0.7966, 0.6046}, {-0.7527, -0.5710, 0.3277}}},
-    // ultra_wide_angle angle 120 right x matrix <1,0,0,0.5,1,0,0.2,0,1,0,0,0>
-    {{Projection::ultra_wide_angle, {{1, 0, 0}, {0.5, 1, 0}, {0.2, 0, 1}}, {120, 0}, CylinderAxis::up},
-     {{0.7079, 0.3880, 0.5902}, {0.7936, 0.0000, 0.6085}, {0.4453, 0.6405, 0.6257}, {-0.6255, -0.4997, 0.5992}}},
-    // omnimax right 4/3*x
-    {{Projection::omnimax, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
-     {{0.5842, 0.6899, 0.4274}, {0.9166, 0.2473, 0.3141}, {0.0000, 0.9058, 0.4237}, {-0.7057, -0.2683, 0.6558}}},
-    // omnimax right 1.1*x
-    {{Projection::omnimax, {{1.1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
-     {{0.5784, 0.6290, 0.5194}, {0.9079, 0.1048, 0.4060}, {0.0000, 0.8782, 0.4783}, {-0.6585, -0.5049, 0.5581}}},
-    // omnimax right 2*x up 3*y
-    {{Projection::omnimax, {{2, 0, 0}, {0, 3, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
-     {{0.5367, 0.7969, 0.2773}, {0.9101, 0.0000, 0.4142}, {0, 0, 0}, {0, 0, 0}}},
-    // panoramic right 4/3*x
-    {{Projection::panoramic, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
-     {{0.6131, 0.6257, 0.4823}, {0.9679, 0.0000, 0.2513}, {0.0000, 0.9048, 0.4258}, {-0.5912, -0.7091, 0.3842}}},
-    // panoramic right 1.5*x matrix <1,0,0,0.5,1,0,0.3,0,1,0,0,0>
-    {{Projection::panoramic, {{1.5, 0, 0}, {0.5, 1, 0}, {0.3, 0, 1}}, {0, 0}, CylinderAxis::up},
-     {{0.8237, 0.4492, 0.3462}, {0.9775, 0.0000, 0.2110}, {0.5018, 0.7826, 0.3683}, {-0.7463, -0.5852, 0.3171}}},
-    // cylinder 1 angle 240 right 2*x up 3*y direction 2*z
-    {{Projection::cylindrical, {{2, 0, 0}, {0, 3, 0}, {0, 0, 2}}, {240, 0}, CylinderAxis::up},
-     {{0.6896, 0.5843, 0.4278}, {0.9969, 0.0000, -0.0793}, {0.0000, 0.7337, 0.6794}, {-0.6965, -0.6432, 0.3181}}},
-    // cylinder 2 angle 120 right 2*x up 3*y
-    {{Projection::cylindrical, {{2, 0, 0}, {0, 3, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::right},
-     {{0.4363, 0.4335, 0.7885}, {0.6189, 0.0000, 0.7855}, {0.0000, 0.6846, 0.7290}, {-0.4789, -0.4858, 0.7312}}},
-    // cylinder 1 angle 120 right x up 2*y matrix <1,0,0,0.5,1,0,0.3,0,1,0,0,0>
-    {{Projection::cylindrical, {{1, 0, 0}, {1, 2, 0}, {0.3, 0, 1}}, {120, 0}, CylinderAxis::up},
-     {{0.7116, 0.3495, 0.6095}, {0.8196, 0.0000, 0.5730}, {0.4753, 0.5287, 0.7033}, {-0.5082, -0.4916, 0.7073}}},
-    // spherical right x
-    {{Projection::spherical, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {360, 180}, CylinderAxis::up},
-     {{0.7281, 0.6846, 0.0347}, {0.6181, 0.0000, -0.7861}, {0.0000, 0.9048, 0.4258}, {-0.6310, -0.7705, -0.0907}}},
-    // spherical angle 200 100 right 4/3*x
-    {{Projection::spherical, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {200, 100}, CylinderAxis::up},
-     {{0.6841, 0.4067, 0.6055}, {0.9809, 0.0000, 0.1944}, {0.0000, 0.5878, 0.8090}, {-0.7192, -0.4695, 0.5122}}},
-    // spherical angle 120 right x matrix <1,0,0,0.5,1,0,0,0,1,0,0,0>
-    {{Projection::spherical, {{1, 0, 0}, {0.5, 1, 0}, {0, 0, 1}}, {120, 60}, CylinderAxis::up},
-     {{0.4338, 0.0318, 0.9005}, {0.6570, -0.3285, 0.6785}, {0.0000, 0.3681, 0.9298}, {-0.4813, -0.0484, 0.8752}}},
+      // fisheye angle 120 right 4/3*x
+      {{Projection::fisheye, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::up},
+       {{0.5996, 0.4452, 0.6651}, {0, 0, 0}, {0.0000, 0.6846, 0.7290}, {-0.6496, -0.5002, 0.5725}}},
+      // fisheye angle 300 right 1.5*x up 0.8*y direction 2*z
+      {{Projection::fisheye, {{1.5, 0, 0}, {0, 0.8, 0}, {0, 0, 2}}, {300, 0}, CylinderAxis::up},
+       {{0.7386, 0.3900, -0.5500}, {0, 0, 0}, {0.0000, 0.9980, 0.0628}, {-0.5647, -0.3092, -0.7652}}},
+      // fisheye angle 120 right x matrix <1,0,0,0.5,1,0,0,0,1,0,0,0>
+      {{Projection::fisheye, {{1, 0, 0}, {0.5, 1, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::up},
+       {{0.6260, 0.4145, 0.6606},
+        {0.7346, 0.0000, 0.6785},
+        {0.3339, 0.6678, 0.6653},
+        {-0.6770, -0.4593, 0.5751}}},
+      // ultra_wide_angle angle 220 right 1.5*x
+      {{Projection::ultra_wide_angle, {{1.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {220, 0}, CylinderAxis::up},
+       {{0.7281, 0.5232, 0.4429},
+        {0.9983, 0.0000, 0.0581},
+        {0.0000, 0.7966, 0.6046},
+        {-0.7527, -0.5710, 0.3277}}},
+      // ultra_wide_angle angle 120 right x matrix <1,0,0,0.5,1,0,0.2,0,1,0,0,0>
+      {{Projection::ultra_wide_angle, {{1, 0, 0}, {0.5, 1, 0}, {0.2, 0, 1}}, {120, 0}, CylinderAxis::up},
+       {{0.7079, 0.3880, 0.5902},
+        {0.7936, 0.0000, 0.6085},
+        {0.4453, 0.6405, 0.6257},
+        {-0.6255, -0.4997, 0.5992}}},
+      // omnimax right 4/3*x
+      {{Projection::omnimax, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
+       {{0.5842, 0.6899, 0.4274},
+        {0.9166, 0.2473, 0.3141},
+        {0.0000, 0.9058, 0.4237},
+        {-0.7057, -0.2683, 0.6558}}},
+      // omnimax right 1.1*x
+      {{Projection::omnimax, {{1.1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
+       {{0.5784, 0.6290, 0.5194},
+        {0.9079, 0.1048, 0.4060},
+        {0.0000, 0.8782, 0.4783},
+        {-0.6585, -0.5049, 0.5581}}},
+      // omnimax right 2*x up 3*y
+      {{Projection::omnimax, {{2, 0, 0}, {0, 3, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
+       {{0.5367, 0.7969, 0.2773}, {0.9101, 0.0000, 0.4142}, {0, 0, 0}, {0, 0, 0}}},
+      // panoramic right 4/3*x
+      {{Projection::panoramic, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0}, CylinderAxis::up},
+       {{0.6131, 0.6257, 0.4823},
+        {0.9679, 0.0000, 0.2513},
+        {0.0000, 0.9048, 0.4258},
+        {-0.5912, -0.7091, 0.3842}}},
+      // panoramic right 1.5*x matrix <1,0,0,0.5,1,0,0.3,0,1,0,0,0>
+      {{Projection::panoramic, {{1.5, 0, 0}, {0.5, 1, 0}, {0.3, 0, 1}}, {0, 0}, CylinderAxis::up},
+       {{0.8237, 0.4492, 0.3462},
+        {0.9775, 0.0000, 0.2110},
+        {0.5018, 0.7826, 0.3683},
+        {-0.7463, -0.5852, 0.3171}}},
+      // cylinder 1 angle 240 right 2*x up 3*y direction 2*z
+      {{Projection::cylindrical, {{2, 0, 0}, {0, 3, 0}, {0, 0, 2}}, {240, 0}, CylinderAxis::up},
+       {{0.6896, 0.5843, 0.4278},
+        {0.9969, 0.0000, -0.0793},
+        {0.0000, 0.7337, 0.6794},
+        {-0.6965, -0.6432, 0.3181}}},
+      // cylinder 2 angle 120 right 2*x up 3*y
+      {{Projection::cylindrical, {{2, 0, 0}, {0, 3, 0}, {0, 0, 1}}, {120, 0}, CylinderAxis::right},
+       {{0.4363, 0.4335, 0.7885},
+        {0.6189, 0.0000, 0.7855},
+        {0.0000, 0.6846, 0.7290},
+        {-0.4789, -0.4858, 0.7312}}},
+      // cylinder 1 angle 120 right x up 2*y matrix <1,0,0,0.5,1,0,0.3,0,1,0,0,0>
+      {{Projection::cylindrical, {{1, 0, 0}, {1, 2, 0}, {0.3, 0, 1}}, {120, 0}, CylinderAxis::up},
+       {{0.7116, 0.3495, 0.6095},
+        {0.8196, 0.0000, 0.5730},
+        {0.4753, 0.5287, 0.7033},
+        {-0.5082, -0.4916, 0.7073}}},
+      // spherical right x
+      {{Projection::spherical, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {360, 180}, CylinderAxis::up},
+       {{0.7281, 0.6846, 0.0347},
+        {0.6181, 0.0000, -0.7861},
+        {0.0000, 0.9048, 0.4258},
+        {-0.6310, -0.7705, -0.0907}}},
+      // spherical angle 200 100 right 4/3*x
+      {{Projection::spherical, {{4.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {200, 100}, CylinderAxis::up},
+       {{0.6841, 0.4067, 0.6055},
+        {0.9809, 0.0000, 0.1944},
+        {0.0000, 0.5878, 0.8090},
+        {-0.7192, -0.4695, 0.5122}}},
+      // spherical angle 120 right x matrix <1,0,0,0.5,1,0,0,0,1,0,0,0>
+      {{Projection::spherical, {{1, 0, 0}, {0.5, 1, 0}, {0, 0, 1}}, {120, 60}, CylinderAxis::up},
+       {{0.4338, 0.0318, 0.9005},
+        {0.6570, -0.3285, 0.6785},
+        {0.0000, 0.3681, 0.9298},
+        {-0.4813, -0.0484, 0.8752}}},
   };
   return all;
 }
@@ -178,14 +218,15 @@ TEST(CurvedView, InversesLeadBack) {
               break;
             case Projection::panoramic:
               found = {u, v, 0};
-              want = {std::atan2(d.x / aspect, d.z) / kPi, std::atan(d.y / std::hypot(d.x / aspect, d.z)) / kPi,
-                      0};
+              want = {std::atan2(d.x / aspect, d.z) / kPi,
+                      std::atan(d.y / std::hypot(d.x / aspect, d.z)) / kPi, 0};
               break;
             case Projection::cylindrical:
               found = {u, v, 0};
-              want = axis == CylinderAxis::up
-                         ? Vec3d{std::atan2(d.x, d.z) / angle, d.y / std::hypot(d.x, d.z) * aspect / angle, 0}
-                         : Vec3d{d.x / std::hypot(d.y, d.z) / aspect / angle, std::atan2(d.y, d.z) / angle, 0};
+              want =
+                  axis == CylinderAxis::up
+                      ? Vec3d{std::atan2(d.x, d.z) / angle, d.y / std::hypot(d.x, d.z) * aspect / angle, 0}
+                      : Vec3d{d.x / std::hypot(d.y, d.z) / aspect / angle, std::atan2(d.y, d.z) / angle, 0};
               break;
             default:
               found = {u * angle, v * angle / 2, 0};
@@ -196,6 +237,20 @@ TEST(CurvedView, InversesLeadBack) {
         }
       EXPECT_GT(seen, 20);
     }
+}
+
+// Its lower edge, in pixels of 200 x 150 of POV-Ray's picture: the last that is seen in a column.
+TEST(CurvedView, TheDomeHasAnEdgeBelow) {
+  Camera camera;
+  camera.projection = Projection::omnimax;
+  camera.set_frame({{2, 0, 0}, {0, 2, 0}, {0, 0, 1}});
+  const CameraFrame frame = camera_frame(camera, film(200, 150));
+  constexpr int kLast[][2] = {{100, 116}, {118, 115}, {136, 112}, {154, 107},
+                              {172, 100}, {190, 86},  {199, 75}};
+  for (const auto& [x, y] : kLast) {
+    EXPECT_FALSE(leaves_out(camera_ray(frame, x + 0.5, y + 0.5))) << x;
+    EXPECT_TRUE(leaves_out(camera_ray(frame, x + 0.5, y + 1.5))) << x;
+  }
 }
 
 TEST(CurvedView, TheFisheyeHasACircle) {

@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-/// A plane z = 0 under a light at height 5, by the textbook: `left` gives the part of the light that is left at
-/// a distance and a cosine to -z.
+/// A plane z = 0 under a light at height 5, by the textbook: `left` gives the part of the light that is left
+/// at a distance and a cosine to -z.
 template <class Left>
 void expect_on_plane(const Light& light, const Left& left) {
   for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path}) {
@@ -39,8 +39,7 @@ TEST(LightFade, PointsFadeWithTheDistance) {
     for (const double power : {1.0, 2.0, 3.5}) {
       PointLight light{{0, 0, 5}, {0.5f, 0.5f, 0.5f}};
       light.fade = {distance, power};
-      expect_on_plane(light,
-                      [&](double r, double) { return 2 / (1 + std::pow(r / distance, power)); });
+      expect_on_plane(light, [&](double r, double) { return 2 / (1 + std::pow(r / distance, power)); });
     }
 }
 
