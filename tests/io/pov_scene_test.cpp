@@ -298,6 +298,9 @@ TEST(PovScene, LightsHaveTheirShape) {
   EXPECT_EQ(lights("cylinder point_at 0"),
             "[{directional: {direction: [0, -5, 0], from: [0, 5, 0], beam: {outer_radius: 1, inner_radius: "
             "0.75}, color: [1, 1, 1]}}]");
+  // It points to z unless told otherwise.
+  EXPECT_EQ(lights("parallel"),
+            "[{directional: {direction: [0, -5, 1], from: [0, 5, 0], color: [1, 1, 1]}}]");
   const std::string round = lights("area_light 2*x, 2*z, 2, 2 circular");
   EXPECT_NE(round.find("position: [0.7071067811865"), std::string::npos) << round;
   EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 17, 2 }"),

@@ -201,7 +201,7 @@ struct LightPoints {
 
 /// A light as POV-Ray has it.
 struct PovLight {
-  Vec3d location{0, 0, 0}, point_at{0, 0, 0};
+  Vec3d location{0, 0, 0}, point_at{0, 0, 1};
   PovColor color{{1, 1, 1}};
   bool spot = false, cylinder = false, parallel = false, shadowless = false, circular = false;
   std::optional<double> radius, falloff;
@@ -360,8 +360,8 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
         const double radius = light.radius.value_or(30),
                      falloff = std::max(light.falloff.value_or(45), radius);
         tree.put(keys, "position", tree.vector(where, at));
-        // The middle of the cone of each point is parallel to that of the light.
-        tree.put(keys, "at", tree.vector(where, at + way));
+        // The cones of all points of a light of some size have the same middle there.
+        tree.put(keys, "at", tree.vector(where, target));
         tree.put(keys, "outer_angle", tree.number(where, std::clamp(falloff, 1e-3, 180.0)));
         tree.put(keys, "inner_angle", tree.number(where, std::clamp(radius, 0.0, 180.0)));
         if (light.tightness > 0) tree.put(keys, "tightness", tree.number(where, light.tightness));
