@@ -107,14 +107,62 @@ static void set_lens(const Camera& camera, double height, CameraFrame& frame) {
                                     : length(camera.at - camera.from);
   const bool has_f_number = camera.f_number > 0 && camera.projection == Projection::perspective;
   const double diameter = has_f_number ? kFilmHeight / height / camera.f_number : camera.aperture;
+  if (is_curved(camera.projection)) return;
   if (diameter > 0 && std::isfinite(diameter) && frame.focus > 0 && std::isfinite(frame.focus))
     frame.lens_radius = diameter / 2;
+}
+
+// ---- Curved projections.
+
+/// The vectors that a curved projection without a frame has, for square pixels in the middle.
+static ViewFrame usual_frame(const Camera& camera, const CameraFrame& view, double aspect, double angle) {
+  ViewFrame frame{view.right * aspect, view.up, view.forward};
+  if (camera.projection != Projection::cylindrical) return frame;
+  const bool upright = camera.axis == CylinderAxis::up;
+  if (camera.along_axis == Projection::orthographic) {
+    frame.right = frame.right * camera.height, frame.up = frame.up * camera.height;
+  } else if (upright) {
+    frame.up = frame.up * (angle / aspect);
+  } else {
+    frame.right = frame.right * angle;
+  }
+  return frame;
+}
+
+static void set_curved(const Camera& camera, const Film& film, CameraFrame& frame) {
+  const double width = std::max(film.width, 1u), height = std::max(film.height, 1u);
+  CurvedView& c = frame.curved;
+  const double angle = camera.angle[0] > 0 ? camera.angle[0] : Camera::usual_angle(camera.projection);
+  c.angle[0] = angle * kDegree;
+  c.angle[1] = (camera.angle[1] > 0 ? camera.angle[1] : angle / 2) * kDegree;
+  const ViewFrame view =
+      camera.frame ? *camera.frame : usual_frame(camera, frame, width / height, c.angle[0]);
+  c.width = length(view.right), c.height = length(view.up), c.distance = length(view.direction);
+  c.x = view.right / c.width, c.y = view.up / c.height, c.z = view.direction / c.distance;
+  c.handedness = dot(cross(c.y, c.z), c.x) > 0 ? 1 : -1;
+  c.axis = camera.axis;
+  c.parallel = camera.projection == Projection::cylindrical && camera.along_axis == Projection::orthographic;
+  c.per_pixel_x = 1 / width, c.per_pixel_y = 1 / height;
+  frame.forward = c.z;
+  const auto across = [](const Vec3d& v, const Vec3d& n) { return v - n * dot(v, n); };
+  frame.right = normalize(across(c.x, c.z));
+  frame.up = normalize(across(across(c.y, c.z), frame.right));
+  const auto way = [&](double x, double y) {
+    return Vec3d(camera_ray(frame, width / 2 + x, height / 2 + y).direction);
+  };
+  frame.pixel_size = std::max(length(way(0.5, 0) - way(-0.5, 0)), length(way(0, 0.5) - way(0, -0.5)));
+  if (!std::isfinite(frame.pixel_size)) frame.pixel_size = 0;
 }
 
 CameraFrame camera_frame(const Camera& camera, const Film& film) {
   CameraFrame frame;
   frame.projection = camera.projection;
   frame.origin = camera.from;
+  if (is_curved(camera.projection)) {
+    look_at(camera, frame);
+    set_curved(camera, film, frame);
+    return frame;
+  }
   if (camera.frame) {
     set_lens(camera, set_view(*camera.frame, film, frame), frame);
     return frame;
@@ -133,7 +181,84 @@ CameraFrame camera_frame(const Camera& camera, const Film& film) {
   return frame;
 }
 
+/// `v` turned about the unit vector `axis`, from `axis` x v counted.
+static Vec3d turned(const Vec3d& v, const Vec3d& axis, double angle) {
+  const Vec3d along = axis * dot(v, axis);
+  return along + (v - along) * portable::cos(angle) + cross(axis, v) * portable::sin(angle);
+}
+
+/// The directions of curved projections by CurvedView; zero where there is none. Those of cylinders move
+/// `origin`.
+static Vec3d curved_direction(const CurvedView& c, Projection projection, double u, double v, Vec3d& origin) {
+  using portable::cos, portable::sin, portable::tan;
+  /// At the angle `from_axis` from Z, towards (x, y).
+  const auto dome = [&](double x, double y, double r, double from_axis) {
+    if (r == 0) return c.z;
+    const double sine = sin(from_axis) / r;
+    return c.z * cos(from_axis) + c.x * (sine * x) + c.y * (sine * y);
+  };
+  switch (projection) {
+    case Projection::fisheye: {
+      const double x = 2 * u * c.width, y = 2 * v * c.height, r = std::sqrt(x * x + y * y);
+      return r <= 1 ? dome(x, y, r, r * c.angle[0] / 2) : Vec3d{0, 0, 0};
+    }
+    case Projection::ultra_wide_angle: {
+      const double a = u * c.angle[0], b = v * c.angle[0] * (c.height / c.width);
+      return c.x * sin(a) + c.y * sin(b) + c.z * (cos(a) * cos(b));
+    }
+    case Projection::omnimax: {
+      // The width of the picture over its height at which it begins to lose a part of the dome.
+      constexpr double kWidest = 1 / 0.77915;
+      const double form = c.width / c.height, scale = 1 / std::min(form, kWidest);
+      const double x = 2 * u * scale * form, y = 2 * v * scale + std::max(0.0, 1 - scale);
+      const double r = std::sqrt(x * x + y * y), r2 = r * r;
+      const double from_axis = r * (1.41127 + r2 * (-0.09438 + r2 * 0.25674));
+      // The lower edge is the great circle that lies an eighth of a turn below the axis.
+      const bool too_low = y < 0 && sin(from_axis) * y + cos(from_axis) * r < 0;
+      return r <= 1 && !too_low ? dome(x, y, r, from_axis) : Vec3d{0, 0, 0};
+    }
+    case Projection::panoramic: {
+      const double a = std::numbers::pi * u;
+      return c.x * (sin(a) * c.width) + c.y * (tan(std::numbers::pi * v) * c.height) +
+             c.z * (cos(a) * c.distance);
+    }
+    case Projection::cylindrical: {
+      const bool upright = c.axis == CylinderAxis::up;
+      const double a = (upright ? u : v) * c.angle[0];
+      const Vec3d along = upright ? c.y * (v * c.height) : c.x * (u * c.width);
+      const Vec3d around = (upright ? c.x : c.y) * sin(a) + c.z * cos(a);
+      if (!c.parallel) return around + along;
+      origin += along;
+      return around;
+    }
+    case Projection::spherical: {
+      const Vec3d raised = turned(c.z, c.x, -c.handedness * v * c.angle[1]);
+      return turned(raised, c.y, c.handedness * u * c.angle[0]);
+    }
+    default:
+      return {0, 0, 0};
+  }
+}
+
+static Ray curved_ray(const CameraFrame& camera, double x, double y) {
+  const CurvedView& c = camera.curved;
+  Vec3d origin = camera.origin;
+  const Vec3d way =
+      curved_direction(c, camera.projection, x * c.per_pixel_x - 0.5, 0.5 - y * c.per_pixel_y, origin);
+  const double size = length(way);
+  Ray ray;
+  ray.origin = Vec3f(origin);
+  if (size > 0 && std::isfinite(size)) {
+    ray.direction = Vec3f(way / size);
+  } else {
+    ray.direction = Vec3f(camera.forward);
+    ray.tmax = 0;
+  }
+  return ray;
+}
+
 Ray camera_ray(const CameraFrame& camera, double x, double y) {
+  if (is_curved(camera.projection)) return curved_ray(camera, x, y);
   const Vec3d place = camera.corner + camera.per_pixel_x * x + camera.per_pixel_y * y;
   Ray ray;
   if (camera.projection == Projection::perspective) {
@@ -161,6 +286,11 @@ Ray camera_ray(const CameraFrame& camera, double x, double y, double u, double v
 }
 
 double camera_depth(const CameraFrame& camera, const Vec3f& p) {
+  if (is_curved(camera.projection)) {
+    const CurvedView& c = camera.curved;
+    const Vec3d d = Vec3d(p) - camera.origin;
+    return length(c.parallel ? cross(d, c.axis == CylinderAxis::up ? c.y : c.x) : d);
+  }
   return dot(Vec3d(p) - camera.origin, camera.forward);
 }
 
@@ -174,7 +304,12 @@ void pixel_footprint(const CameraFrame& camera, const Ray& ray, const Vec3f& p, 
     const Vec3f d(from + along * (t / slope) - point);
     return t / slope > 0 && is_finite(d) ? d : Vec3f{};
   };
-  if (camera.projection == Projection::perspective) {
+  if (is_curved(camera.projection)) {
+    Vec3d across, down;
+    make_basis(direction, across, down);
+    dx = meet(origin, direction + across * camera.pixel_size);
+    dy = meet(origin, direction + down * camera.pixel_size);
+  } else if (camera.projection == Projection::perspective) {
     const Vec3d place = direction / dot(direction, camera.forward);
     dx = meet(origin, place + camera.per_pixel_x);
     dy = meet(origin, place + camera.per_pixel_y);

@@ -17,10 +17,12 @@ static LightSource light_source(const Light& light) {
   LightSource source;
   if (const auto* point = std::get_if<PointLight>(&light)) {
     source.place = Vec3f(point->position), source.color = point->color, source.falloff = point->falloff;
+    source.fade = point->fade;
     source.profile = profile_of(*point);
   } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
     const auto cosine = [](double degrees) { return static_cast<float>(portable::cos(degrees * kDegree)); };
     source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = spot->falloff;
+    source.fade = spot->fade, source.tightness = spot->profile == nullptr ? spot->tightness : 0;
     source.spot = spot->profile == nullptr, source.profile = profile_of(*spot);
     source.axis = Vec3f(normalize(spot->direction));
     source.cos_inner = cosine(spot->inner_angle), source.cos_outer = cosine(spot->outer_angle);
@@ -29,6 +31,10 @@ static LightSource light_source(const Light& light) {
     const DirectionalLight directional = sky != nullptr ? sun_of(*sky) : std::get<DirectionalLight>(light);
     source.place = Vec3f(normalize(-directional.direction)), source.color = directional.color;
     source.directional = true;
+    if (directional.from) {
+      source.from_place = true, source.from = *directional.from;
+      source.fade = directional.fade, source.beam = directional.beam;
+    }
   }
   return source;
 }
@@ -61,6 +67,12 @@ static void set_depth_range(const Box& box, RenderContext& context) {
     const double depth = camera_depth(context.camera, p);
     nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
   }
+  // A curved view sees to all sides: the nearest place need not be a corner.
+  if (is_curved(context.camera.projection)) {
+    const Vec3f eye(context.camera.origin);
+    nearest =
+        context.camera.curved.parallel ? 0 : camera_depth(context.camera, min(max(eye, box.lo), box.hi));
+  }
   nearest = std::max(nearest, 0.0);
   if (!(farthest > nearest)) return;
   context.near_depth = static_cast<float>(nearest), context.far_depth = static_cast<float>(farthest);
@@ -76,6 +88,9 @@ std::vector<LightSource> light_sources(const Scene& scene) {
     if (!lights_whitted(scene.lights[i])) continue;
     sources.push_back(light_source(scene.lights[i]));
     sources.back().list = light_list_number(list_of_light(scene, i));
+    if (i >= scene.light_traits.size()) continue;
+    sources.back().shadows = scene.light_traits[i].shadows;
+    sources.back().highlights = scene.light_traits[i].highlights;
   }
   return sources;
 }
@@ -141,8 +156,9 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background =
       !(c.background == Color{0, 0, 0}) || c.background_texture != kNoId || lights.has_environment();
-  // Shadow catchers count what they cover.
-  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches;
+  // Shadow catchers count what they cover, and curved views may leave out a part of the picture.
+  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches &&
+                 !is_curved(c.camera.projection);
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;

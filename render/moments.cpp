@@ -46,7 +46,10 @@ Light moved_light(const Affine& motion, const Light& light) {
     else
       spot->direction = motion.vector(spot->direction);
   }
-  if (auto* far = std::get_if<DirectionalLight>(&moved)) far->direction = motion.vector(far->direction);
+  if (auto* far = std::get_if<DirectionalLight>(&moved)) {
+    far->direction = motion.vector(far->direction);
+    if (far->from) far->from = motion.point(*far->from);
+  }
   return moved;
 }
 

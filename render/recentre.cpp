@@ -164,6 +164,8 @@ void move_lights(const Vec3d& origin, const Affine& to, const Affine& from, Scen
   for (Light& light : scene.lights) {
     if (auto* const point = std::get_if<PointLight>(&light)) point->position = point->position - origin;
     if (auto* const spot = std::get_if<SpotLight>(&light)) spot->position = spot->position - origin;
+    if (auto* const far = std::get_if<DirectionalLight>(&light); far != nullptr && far->from)
+      far->from = *far->from - origin;
   }
   for (LightTraits& traits : scene.light_traits) traits.motion = moved_motion(traits.motion, to, from);
 }

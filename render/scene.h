@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "kernels/closed/shape_data.h"
 #include "kernels/exact_form.h"
 #include "render/light/environment_picture.h"
+#include "render/light/light_fade.h"
 #include "render/light/light_profile.h"
 #include "render/material.h"
 #include "render/medium/medium.h"
@@ -31,8 +33,38 @@ namespace oktett {
 /// Height of the film that f-numbers refer to, in world units: that of a 35 mm camera, in metres.
 inline constexpr double kFilmHeight = 0.024;
 
-/// How a camera projects.
-enum class Projection { perspective, orthographic };
+/// How a camera projects. All but the first two are curved: straight lines are not straight in the picture.
+enum class Projection {
+  perspective,
+  orthographic,
+  fisheye,           ///< equidistant: the distance from the middle is the angle from the view axis
+  ultra_wide_angle,  ///< like the fisheye, but fills the picture
+  omnimax,           ///< a dome that is filled by a projector off its middle
+  panoramic,         ///< half a turn across, the height by the tangent
+  cylindrical,       ///< the wall of a cylinder, unrolled
+  spherical,         ///< longitude across, latitude up: equirectangular
+};
+/// Their names.
+inline constexpr Choice<Projection> kProjections[] = {
+    {"perspective", Projection::perspective}, {"orthographic", Projection::orthographic},
+    {"fisheye", Projection::fisheye},         {"ultra_wide_angle", Projection::ultra_wide_angle},
+    {"omnimax", Projection::omnimax},         {"panoramic", Projection::panoramic},
+    {"cylindrical", Projection::cylindrical}, {"spherical", Projection::spherical}};
+/// Whether the picture is no plane.
+constexpr bool is_curved(Projection projection) {
+  return projection != Projection::perspective && projection != Projection::orthographic;
+}
+/// Whether Camera::angle counts.
+constexpr bool has_angle(Projection projection) {
+  return projection == Projection::fisheye || projection == Projection::ultra_wide_angle ||
+         projection == Projection::cylindrical || projection == Projection::spherical;
+}
+
+/// The axis of the cylinder of a cylindrical projection.
+enum class CylinderAxis { up, right };
+/// Their names.
+inline constexpr Choice<CylinderAxis> kCylinderAxes[] = {{"up", CylinderAxis::up},
+                                                         {"right", CylinderAxis::right}};
 
 /// What a camera sees, as POV-Ray has it: the middle of the picture lies in `direction`, its edges half of
 /// `right` and half of `up` away, whatever the size of the film. The vectors may be of any lengths, need not
@@ -63,7 +95,15 @@ struct Camera {
   Vec3d at{0, 0, 0};
   Vec3d up{0, 1, 0};  ///< the direction that points up in the picture, of any length
   double fov = 40;    ///< full vertical angle in degrees, (0, 180); perspective only
-  double height = 2;  ///< height of the view volume in world units; orthographic only
+  /// Height of the view volume in world units; orthographic, also along the axis of a cylinder, only.
+  double height = 2;
+  /// Full angles in degrees, (0, 360]; 0: usual_angle(). See has_angle() for the projections that have one,
+  /// and docs/scene-format.md for what it spans. Of a spherical picture the second is the vertical one; 0:
+  /// half of the first. Of all others there is only one.
+  double angle[2] = {0, 0};
+  CylinderAxis axis = CylinderAxis::up;  ///< cylindrical only
+  /// Cylindrical only: orthographic along the axis, so that the eye moves along it, instead of perspective.
+  Projection along_axis = Projection::perspective;
   /// Diameter of the lens in world units; 0 is a pinhole, which shows everything sharp.
   double aperture = 0;
   /// If not 0, the aperture is the focal length divided by this, for film of kFilmHeight; perspective only.
@@ -75,6 +115,10 @@ struct Camera {
   /// Instead of the direction of `at`, `up`, `fov` and `height`, which set_frame makes resemble it.
   std::optional<ViewFrame> frame{};
   bool operator==(const Camera&) const = default;
+  /// The angle that a projection has if none is given, in degrees.
+  static constexpr double usual_angle(Projection projection) {
+    return projection == Projection::spherical ? 360 : 180;
+  }
   /// Takes a frame, as seen from `from`.
   void set_frame(const ViewFrame& given);
 
@@ -84,10 +128,13 @@ struct Camera {
     bool is_plain = p.field("at", at, "what it looks at");
     is_plain |= p.field("up", up, "what points up in the picture; not parallel to the view");
     is_plain |= p.field("fov", fov, kFieldsOfView, "perspective: full vertical angle in degrees");
-    p.choice("projection", projection,
-             {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
-             "how the camera projects");
+    p.choice("projection", projection, kProjections, "how the camera projects");
     is_plain |= p.field("height", height, kPositive, "orthographic: height of what is seen");
+    p.optional("angle", Angles{angle},
+               "curved projections: full angle in degrees, of a spherical one also [horizontal, vertical]");
+    p.choice("axis", axis, kCylinderAxes, "cylindrical: the axis of the cylinder");
+    p.choice("along_axis", along_axis, std::span(kProjections).first(2),
+             "cylindrical: projection along the axis");
     if (is_plain) frame.reset();
     ViewFrame given;
     if (p.optional("frame", given, "instead of `at`, `up`, `fov` and `height`: what is seen, by vectors"))
@@ -106,6 +153,10 @@ struct Camera {
   struct Focus {
     double& distance;
     std::optional<Vec3d>& point;
+  };
+  /// Camera::angle.
+  struct Angles {
+    double (&values)[2];
   };
 };
 
@@ -286,6 +337,7 @@ struct PointLight {
   std::shared_ptr<const LightProfile> profile = nullptr;
   double rotation = 0;   ///< of the profile: degrees about its axis
   Vec3d down{0, -1, 0};  ///< of any length but zero
+  LightFade fade{};      ///< without `falloff`
 };
 
 /// A point that emits light into a cone, which falls off as 1/r^2 unless `falloff` is not set. From the inner
@@ -300,6 +352,9 @@ struct SpotLight {
   std::shared_ptr<const LightProfile> profile = nullptr;
   double rotation = 0;  ///< of the profile: degrees about its axis
   bool falloff = true;
+  LightFade fade{};  ///< without `falloff`
+  double tightness =
+      0;  ///< power of the cosine to the axis that multiplies the light, >= 0; with angles only
 };
 
 /// Parallel light that travels along `direction`.
@@ -309,6 +364,11 @@ struct DirectionalLight {
   /// Angular diameter in degrees, [0, 180]: the light comes from a disk in the sky, which path tracing shows
   /// and samples. The sun has 0.53.
   double angle = 0;
+  // In Whitted's model:
+  /// What lies behind the plane through this point, across the light, casts no shadow.
+  std::optional<Vec3d> from{};
+  LightFade fade{};  ///< with the distance from that plane; none without `from`
+  LightBeam beam{};  ///< about the line through `from`, and only before the plane; none without `from`
 };
 
 /// Light from all directions, which is also the background.
@@ -343,6 +403,8 @@ struct LightTraits {
   MotionPointer motion{};      ///< moves the light; not of environments and skies
   std::string group{};         ///< the light group; empty: kDefaultLightGroup
   std::uint32_t list = kNoId;  ///< index into Scene::light_lists; kNoId: it lights all objects
+  bool shadows = true;     ///< in Whitted's model, of lights that are no environment: things are in its way
+  bool highlights = true;  ///< likewise: it shows Phong's highlights
 };
 
 /// The group of all light that is in no other: that of lights without a group, the background and media.

@@ -66,12 +66,14 @@ AimedProfile profile_of(const SpotLight& light) {
 }
 
 static Emitter emitter(const PointLight& light) {
-  return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light)};
+  return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light),
+                      light.fade};
 }
 
 static Emitter emitter(const SpotLight& light) {
   if (light.profile != nullptr)
-    return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light)};
+    return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light),
+                        light.fade};
   const auto cos_outer = static_cast<float>(portable::cos(light.outer_angle * kDegree));
   const auto cos_inner = static_cast<float>(portable::cos(light.inner_angle * kDegree));
   // A sharp edge is one that fades over the least step of the cosine.
@@ -80,7 +82,9 @@ static Emitter emitter(const SpotLight& light) {
                      .intensity = light.color * kIrradiance,
                      .cos_inner = std::max(cos_inner, cos_outer + 0x1p-23f),
                      .cos_outer = cos_outer,
-                     .falloff = light.falloff};
+                     .falloff = light.falloff,
+                     .fade = light.fade,
+                     .tightness = light.tightness};
 }
 
 static Emitter emitter(const DirectionalLight& light) {

@@ -27,6 +27,13 @@ struct LightSource {
   float back = 0;  ///< of a glowing surface: the fraction of the front's light that the back gives, 0 or 1
   float lift = 0;  ///< of a glowing surface: shadow rays end this far above it
   AimedProfile profile = {};
+  LightFade fade = {};
+  bool from_place = false;  ///< of a directional light: `from` counts, and `beam`
+  Vec3d from = {};
+  LightBeam beam = {};
+  double tightness = 0;    ///< of a spot
+  bool shadows = true;     ///< things are in its way
+  bool highlights = true;  ///< it shows Phong's highlights
 };
 
 /// What local shading needs of a material, in one cache line. Numbered like World::materials.

@@ -174,8 +174,8 @@ void pixel_vectors(const RenderContext& c, const Ray& ray, const Hit& hit, const
   if (history.from_camera && history.distance == 0) {
     pixel_footprint(c.camera, ray, s.position, s.geometric_normal, x, y);
   } else {
-    const bool perspective = c.camera.projection == Projection::perspective;
-    const auto width = static_cast<float>(c.camera.pixel_size * (perspective ? history.distance + hit.t : 1));
+    const bool parallel = c.camera.projection == Projection::orthographic;
+    const auto width = static_cast<float>(c.camera.pixel_size * (parallel ? 1 : history.distance + hit.t));
     make_basis(s.geometric_normal, x, y);
     x *= width, y *= width;
   }

@@ -115,14 +115,24 @@ std::string camera_yaml(Camera c, const Vec3d& origin) {
   c.from = origin + c.from, c.at = origin + c.at;
   if (c.focus_at) c.focus_at = origin + *c.focus_at;
   std::string out = fmt::format("camera:\n  from: {}\n", list_text(c.from));
-  const bool perspective = c.projection == Projection::perspective;
+  const bool parallel = c.along_axis == Projection::orthographic;
   if (!c.frame) out += fmt::format("  at: {}\n  up: {}\n", list_text(c.at), list_text(c.up));
-  if (!perspective) out += "  projection: orthographic\n";
+  if (c.projection != Projection::perspective)
+    out += fmt::format("  projection: {}\n", kProjections[static_cast<int>(c.projection)].name);
   if (c.frame)
     out += fmt::format("  frame: {{right: {}, up: {}, direction: {}}}\n", list_text(c.frame->right),
                        list_text(c.frame->up), list_text(c.frame->direction));
-  else
-    out += perspective ? fmt::format("  fov: {}\n", c.fov) : fmt::format("  height: {}\n", c.height);
+  else if (c.projection == Projection::perspective)
+    out += fmt::format("  fov: {}\n", c.fov);
+  else if (c.projection == Projection::orthographic || (c.projection == Projection::cylindrical && parallel))
+    out += fmt::format("  height: {}\n", c.height);
+  if (c.angle[1] > 0)
+    out += fmt::format("  angle: [{}, {}]\n", c.angle[0], c.angle[1]);
+  else if (c.angle[0] > 0)
+    out += fmt::format("  angle: {}\n", c.angle[0]);
+  if (c.projection == Projection::cylindrical)
+    out += fmt::format("  axis: {}\n  along_axis: {}\n", kCylinderAxes[static_cast<int>(c.axis)].name,
+                       kProjections[static_cast<int>(c.along_axis)].name);
   if (c.f_number > 0)
     out += fmt::format("  f_number: {}\n", c.f_number);
   else if (c.aperture > 0)

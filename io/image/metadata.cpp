@@ -107,7 +107,7 @@ Matrix4 rounded(const Matrix4d& m) {
 
 std::optional<CameraMatrices> camera_matrices(const Camera& camera, std::uint32_t width,
                                               std::uint32_t height) {
-  if (width == 0 || height == 0) return std::nullopt;
+  if (width == 0 || height == 0 || is_curved(camera.projection)) return std::nullopt;
   if (camera.frame) {
     const FrameMatrices m(camera, *camera.frame);
     if (!is_finite(m.to_camera) || !is_finite(m.to_ndc)) return std::nullopt;

@@ -25,7 +25,7 @@ struct CameraMatrices {
 };
 
 /// The matrices of a camera that fills a frame of `width` x `height` pixels; nothing for a camera whose view
-/// direction or `up` is degenerate.
+/// direction or `up` is degenerate, and for curved projections, which no matrix describes.
 std::optional<CameraMatrices> camera_matrices(const Camera& camera, std::uint32_t width,
                                               std::uint32_t height);
 

@@ -36,7 +36,8 @@ void add_light(SceneLoad& load, Light light, LightTraits traits) {
     traits.motion = nullptr;
   }
   load.scene.lights.push_back(std::move(light));
-  if (!traits.motion && traits.group.empty() && traits.list == kNoId) return;
+  if (!traits.motion && traits.group.empty() && traits.list == kNoId && traits.shadows && traits.highlights)
+    return;
   load.scene.light_traits.resize(load.scene.lights.size());
   load.scene.light_traits.back() = std::move(traits);
 }
@@ -77,6 +78,18 @@ void describe_traits(auto& p, LightTraits& traits) {
   p.optional("motion", traits.motion, "transforms of the light");
   describe_shared(p, traits);
 }
+/// Of lights that are points or parallel.
+void describe_shadows(auto& p, LightTraits& traits) {
+  p.field("shadows", traits.shadows, "`whitted`: whether things are in its way");
+  p.field("highlights", traits.highlights, "`whitted`: whether it shows highlights");
+}
+/// Warns where these mean nothing.
+void check_shadows(SceneLoad& load, const Fields& fields, const LightTraits& traits) {
+  const IntegratorKind kind = load.integrator.value_or(load.scene.integrator.kind);
+  const bool path = oktett::traits(kind).traces_paths;
+  load.warn_if_unused(fields, "shadows", path && !traits.shadows, "all light of 'path' has shadows");
+  load.warn_if_unused(fields, "highlights", path && !traits.highlights, "all light of 'path' has highlights");
+}
 void describe_direction(auto& p, const char* key, Vec3d& direction, const char* meaning) {
   p.field(key, direction, meaning);
   p.check(!(direction == Vec3d{0, 0, 0}), key, "the direction must not be zero");
@@ -93,6 +106,10 @@ struct EmitterColor {
     p.not_both("color", "intensity");
     for (const char* key : {"color", "intensity"})
       p.not_both(key, "power", "expected 'color', 'intensity' or 'power', not two of them");
+  }
+  void describe_fade(auto& p, PointOrSpot& light) {
+    p.optional("fade", light.fade, "instead of `falloff`: how the light fades with the distance");
+    for (const char* key : {"falloff", "intensity", "power"}) p.not_both("fade", key);
   }
   void describe_profile(auto& p, PointOrSpot& light) {
     p.optional("profile", ProfileFile{light.profile},
@@ -129,7 +146,9 @@ struct PointKeys {
     color.describe_color(p, light);
     p.field("falloff", light.falloff,
             "divides by the squared distance; `intensity`, `power` and `profile` set it");
+    color.describe_fade(p, light);
     color.describe_profile(p, light);
+    describe_shadows(p, traits);
     describe_traits(p, traits);
   }
 };
@@ -139,8 +158,9 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode&, PointKeys& k
   keys.color.finish(fields, light);
   // An intensity means light that falls off.
   const bool falls_off = fields["intensity"] || fields["power"];
-  if (!fields["falloff"]) light.falloff = falls_off || fields["profile"];
+  if (!fields["falloff"]) light.falloff = falls_off || (fields["profile"] && !fields["fade"]);
   check_falloff(fields, light);
+  check_shadows(load, fields, keys.traits);
   add_light(load, light, keys.traits);
 }
 
@@ -157,14 +177,19 @@ struct SpotKeys {
     p.optional("at", at, "instead of `direction`: a point there");
     color.describe_color(p, light);
     p.field("falloff", light.falloff, "divides by the squared distance");
+    color.describe_fade(p, light);
     p.optional("inner_angle", light.inner_angle, Range{0, 180},
                "where light begins to fade; 3/4 of the outer one if left out");
     p.field("outer_angle", light.outer_angle, Range{0, 180, true},
             "degrees from the middle where light ends");
+    p.field("tightness", light.tightness, kNonNegative,
+            "power of the cosine to the middle that multiplies the light");
     color.describe_profile(p, light);
+    describe_shadows(p, traits);
     describe_traits(p, traits);
     p.not_both("direction", "at");
-    for (const char* key : {"inner_angle", "outer_angle"})
+    p.not_both("tightness", "power");
+    for (const char* key : {"inner_angle", "outer_angle", "tightness"})
       p.not_both("profile", key, "expected 'profile' or angles, not both");
   }
 };
@@ -178,13 +203,16 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, SpotKey
   if (!fields["inner_angle"]) light.inner_angle = 0.75 * light.outer_angle;
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
+  if (fields["fade"]) light.falloff = false;
   check_falloff(fields, light);
+  check_shadows(load, fields, keys.traits);
   keys.color.finish(fields, light);
   add_light(load, light, keys.traits);
 }
 
 struct DirectionalKeys {
   DirectionalLight light{};
+  Vec3d from{0, 0, 0};
   Color irradiance{1, 1, 1};
   LightTraits traits{};
 
@@ -195,12 +223,25 @@ struct DirectionalKeys {
     p.optional("irradiance", irradiance, "instead of `color`: W/m²");
     p.not_both("color", "irradiance");
     p.field("angle", light.angle, Range{0, 180}, "angular diameter in degrees");
+    p.optional("from", from,
+               "`whitted`: what lies behind the plane across the light through this point casts no shadow");
+    p.optional("fade", light.fade, "`whitted`: how the light fades with the distance from that plane");
+    p.optional("beam", light.beam, "`whitted`: how wide the light is about the line through `from`");
+    describe_shadows(p, traits);
     describe_traits(p, traits);
   }
 };
 
 void finish(SceneLoad& load, const Fields& fields, const YamlNode&, DirectionalKeys& keys) {
   if (fields["irradiance"]) keys.light.color = color_of_unit(keys.irradiance);
+  check_shadows(load, fields, keys.traits);
+  if (fields["from"]) keys.light.from = keys.from;
+  for (const char* key : {"fade", "beam"})
+    if (fields[key] && !fields["from"])
+      throw Error(fields[key]->where(), fmt::format("'{}' counts from a place: 'from' is missing", key));
+  const bool path = traits(load.integrator.value_or(load.scene.integrator.kind)).traces_paths;
+  for (const char* key : {"from", "fade", "beam"})
+    load.warn_if_unused(fields, key, path, "parallel light of 'path' has no ends");
   add_light(load, keys.light, keys.traits);
 }
 

@@ -69,6 +69,7 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Motio
 // These change only what the node gives, so that a file overrides what it includes key by key.
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera& camera);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera::Focus& focus);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera::Angles& angles);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, IntegratorSettings& integrator);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings& caustics);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings::Radius& radius);
@@ -81,6 +82,7 @@ std::string schema_of(Schema& schema, const Range& range, const MediumName& medi
 std::string schema_of(Schema& schema, const Range& range, const LightGroupName& group);
 std::string schema_of(Schema& schema, const Range& range, const MotionPointer& motion);
 std::string schema_of(Schema& schema, const Range& range, const Camera::Focus& focus);
+std::string schema_of(Schema& schema, const Range& range, const Camera::Angles& angles);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings& caustics);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
 

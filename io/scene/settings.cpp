@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
@@ -22,12 +24,44 @@ void check_view(const Camera& camera, const YamlNode& node) {
     throw Error(node.where(), "the camera's 'up' is parallel to its view direction");
 }
 
+/// What a projection is called in messages, such as "an orthographic view".
+std::string view_name(Projection projection) {
+  const std::string_view name = std::ranges::find(kProjections, projection, &Choice<Projection>::value)->name;
+  return fmt::format("{} {} view",
+                     std::string_view("aeiou").find(name[0]) == std::string_view::npos ? "a" : "an", name);
+}
+
 void check_lens(const Fields& fields, const YamlNode& node, const Camera& camera) {
   const YamlNode *f_number = fields["f_number"], *focus = fields["focus"];
+  if (is_curved(camera.projection))
+    for (const char* key : {"aperture", "f_number", "focus"})
+      if (fields[key])
+        throw Error(fields[key]->where(),
+                    fmt::format("{} has no lens; '{}' is for perspective and orthographic views",
+                                view_name(camera.projection), key));
   if (f_number && camera.projection == Projection::orthographic)
     throw Error(f_number->where(), "an orthographic view has no f-number; expected 'aperture'");
   if (camera.focus_at && !(dot(*camera.focus_at - camera.from, camera.at - camera.from) > 0))
     throw Error(focus ? focus->where() : node.where(), "the point in focus does not lie before the camera");
+}
+
+/// Warns of keys that another projection has.
+void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Camera& camera) {
+  const Projection projection = camera.projection;
+  const bool cylindrical = projection == Projection::cylindrical;
+  const bool by_height = projection == Projection::orthographic ||
+                         (cylindrical && camera.along_axis == Projection::orthographic);
+  const std::string view = view_name(projection);
+  const auto has = [&](const char* what) { return fmt::format("{} has {}", view, what); };
+  const std::string own = projection == Projection::perspective    ? has("a 'fov'")
+                          : projection == Projection::orthographic ? has("a 'height'")
+                          : has_angle(projection)                  ? has("an 'angle'")
+                                                                   : has("always the same angle");
+  load.warn_if_unused(fields, "fov", projection != Projection::perspective, own);
+  load.warn_if_unused(fields, "height", !by_height, own);
+  load.warn_if_unused(fields, "angle", !has_angle(projection), own);
+  for (const char* key : {"axis", "along_axis"})
+    load.warn_if_unused(fields, key, !cylindrical, fmt::format("{} has no cylinder", view));
 }
 
 /// Warns of settings that change nothing, given the others.
@@ -71,6 +105,22 @@ std::string schema_of(Schema&, const Range&, const Camera::Focus&) {
   return Schema::any_of({Schema::number(kPositive), Schema::vector()});
 }
 
+// ---- An angle, or two.
+
+static constexpr Range kCurvedAngles{0, 360, true};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera::Angles& angles) {
+  angles.values[1] = 0;
+  if (node.kind == YamlKind::sequence)
+    load.values.numbers(node, angles.values, kCurvedAngles);
+  else
+    angles.values[0] = load.values.number(node, kCurvedAngles);
+}
+
+std::string schema_of(Schema&, const Range&, const Camera::Angles&) {
+  return Schema::any_of({Schema::number(kCurvedAngles), Schema::numbers(2, kCurvedAngles)});
+}
+
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& camera) {
   load.scene.camera_given = true;
   const Fields fields = read_described(load, node, "camera", camera);
@@ -79,9 +129,11 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& cam
   else
     check_view(camera, node);
   check_lens(fields, node, camera);
-  const bool perspective = camera.projection == Projection::perspective;
-  load.warn_if_unused(fields, "fov", !perspective, "an orthographic view has a 'height'");
-  load.warn_if_unused(fields, "height", perspective, "a perspective view has a 'fov'");
+  if (const YamlNode* angle = fields["angle"];
+      angle && angle->kind == YamlKind::sequence && camera.projection != Projection::spherical)
+    throw Error(angle->where(),
+                fmt::format("{} has one angle; two are for a spherical view", view_name(camera.projection)));
+  warn_of_unused_keys(load, fields, camera);
   // One key says where the camera stands all the time.
   if (!camera.motion || camera.motion->moves()) return;
   camera = camera_at(camera, 0);

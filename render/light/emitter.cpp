@@ -8,6 +8,7 @@
 
 #include "core/math.h"
 #include "render/light/emitter_lanes.h"
+#include "render/light/light_share.h"
 
 namespace oktett {
 
@@ -188,14 +189,22 @@ static std::optional<LightSample> sample_cone(const LightCone& cone, const Color
   return sample;
 }
 
+static std::optional<LightSample> faded(const LightFade& fade, std::optional<LightSample> sample) {
+  if (sample && fade.fades()) sample->radiance *= faded_share(fade, sample->distance);
+  return sample;
+}
+
 static std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p,
                                               const SquareSample&) {
-  return sample_cone(light_cone(e), e.intensity, e.profile(Vec3d(p.position) - Vec3d(e.position)), p);
+  const float part = e.profile(Vec3d(p.position) - Vec3d(e.position));
+  return faded(e.fade, sample_cone(light_cone(e), e.intensity, part, p));
 }
 
 static std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p,
                                               const SquareSample&) {
-  return sample_cone(light_cone(e), e.intensity, 1, p);
+  std::optional<LightSample> sample = faded(e.fade, sample_cone(light_cone(e), e.intensity, 1, p));
+  if (sample) sample->radiance *= tight_share(-dot(Vec3d(sample->direction), Vec3d(e.axis)), e.tightness);
+  return sample;
 }
 
 static float pdf_kind(const PointEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }

@@ -11,6 +11,7 @@
 
 #include "core/vec3.h"
 #include "render/light/environment_map.h"
+#include "render/light/light_fade.h"
 #include "render/light/light_profile.h"
 #include "render/light/light_sample.h"
 #include "render/light/light_tree.h"
@@ -77,6 +78,7 @@ struct PointEmitter {
   /// False: it lights each point, however far, with the irradiance `intensity`.
   bool falloff = true;
   AimedProfile profile = {};
+  LightFade fade = {};
 };
 
 /// A point that gives light into a cone. Between the two angles the intensity falls as 3 t^2 - 2 t^3, where t
@@ -88,6 +90,8 @@ struct SpotEmitter {
   float cos_inner = 1;  ///< cosine of the angle to the axis up to which the intensity is full
   float cos_outer = 0;  ///< cosine of the angle beyond which it is dark, < cos_inner
   bool falloff = true;  ///< as of PointEmitter
+  LightFade fade = {};
+  double tightness = 0;  ///< power of the cosine to the axis that multiplies the intensity
 };
 
 /// Light from infinitely far away: from one direction, or from a disk in the sky.

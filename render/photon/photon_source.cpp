@@ -10,6 +10,7 @@
 #include "core/math.h"
 #include "render/bsdf/principled/base.h"
 #include "render/light/emitter_kinds.h"
+#include "render/light/light_share.h"
 #include "render/sampling/warp.h"
 
 namespace oktett {
@@ -210,7 +211,7 @@ Color intensity(const SpotEmitter& e, const Vec3d& direction) {
   const double cosine = dot(Vec3d(e.axis), direction);
   if (!(cosine > e.cos_outer)) return {};
   const double t = cosine >= e.cos_inner ? 1 : (cosine - e.cos_outer) / (double{e.cos_inner} - e.cos_outer);
-  return e.intensity * static_cast<float>(t * t * (3 - 2 * t));
+  return e.intensity * (static_cast<float>(t * t * (3 - 2 * t)) * tight_share(cosine, e.tightness));
 }
 
 double area_weight(const Color& radiance, double area, bool both, const Vec3d& center,

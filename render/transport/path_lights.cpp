@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "render/light/emitter_kinds.h"
+#include "render/light/light_share.h"
 #include "render/transport/render_code.h"
 
 namespace oktett {
@@ -138,6 +139,14 @@ class LightSampler {
           pdf_of(group, i));
   }
 
+  /// What fading and tightness leave of the light of a spot.
+  float spot_share(const LightGroup& group, std::size_t i) const {
+    const auto& spot = std::get<SpotEmitter>(set_.emitters()[group.number[i]]);
+    const Vec3d direction(InteractionBlock::get(group.direction, i));
+    return faded_share(spot.fade, group.distance[i]) *
+           tight_share(-dot(direction, Vec3d(spot.axis)), spot.tightness);
+  }
+
   void finish_points(const LightCode& code) {
     LightGroup& group = points_;
     if (group.count == 0) return;
@@ -151,6 +160,7 @@ class LightSampler {
       if (point != nullptr)
         light =
             light * point->profile(Vec3d(InteractionBlock::get(group.position, i)) - Vec3d(point->position));
+      light *= point != nullptr ? faded_share(point->fade, group.distance[i]) : spot_share(group, i);
       if (is_finite(light)) set(group, i, group.distance[i], light, pdf_of(group, i), true);
     }
   }

@@ -452,6 +452,20 @@ void fill_camera_rays(Wavefront& wavefront) {
   std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
 }
 
+/// Takes away the camera rays of film points at which nothing is seen; their samples stay black.
+void drop_left_out(Wavefront& wavefront) {
+  RayQueue& rays = wavefront.rays;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray ray = rays.rays[i];
+    if (leaves_out(ray)) continue;
+    rays.rays.set(kept, ray), rays.sample[kept] = rays.sample[i];
+    wavefront.hits.span().set(kept, wavefront.hits[i]);
+    ++kept;
+  }
+  rays.resize_uninitialized(kept), wavefront.hits.resize_uninitialized(kept);
+}
+
 /// Resets the results of samples, except for their colour.
 void fill_samples(const RenderContext& context, SampleBatch& samples) {
   std::fill_n(samples.alpha.data(), samples.size(), context.all_opaque ? 1.0f : 0.0f);
@@ -493,6 +507,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
       const bool may_be_empty = !context.opaque_background && !context.tracks_dielectrics;
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
+      if (is_curved(context.camera.projection)) drop_left_out(wavefront);
       if (context.catches) add_caught_samples(wavefront.samples);
       fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);

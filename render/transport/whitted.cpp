@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "accel/accel.h"
 #include "accel/accel_data.h"
 #include "core/math.h"
+#include "render/light/light_share.h"
 #include "render/shading_lanes.h"
 #include "render/transport/integrators.h"
 #include "render/transport/render_code.h"
@@ -176,20 +178,59 @@ void keep_listed(const RenderContext& context, const Wavefront& wavefront, const
   queue.resize_uninitialized(left);
 }
 
+/// Takes from the light of the rays from `first` on what its distance and its angle to the axis of the light
+/// cost.
+void fade_light(const LightSource& light, std::size_t first, ShadowQueue& queue) {
+  for (std::size_t i = first; i < queue.size(); ++i) {
+    const Vec3d way(queue.rays[i].direction);
+    const double distance = length(way);
+    const float left = faded_share(light.fade, distance) *
+                       tight_share(-dot(way, Vec3d(light.axis)) / distance, light.tightness);
+    queue.light.set(i, queue.light[i] * left);
+  }
+}
+
+/// The same of a directional light that has a place. Its shadow rays end there.
+void end_light(const LightSource& light, std::size_t first, ShadowQueue& queue) {
+  for (std::size_t i = first; i < queue.size(); ++i) {
+    const Vec3d towards(light.place), way = light.from - Vec3d(queue.rays[i].origin);
+    const double distance = dot(way, towards);
+    float left = faded_share(light.fade, std::max(distance, 0.0));
+    if (light.beam.ends())
+      left *= distance > 0 ? beam_share(light.beam, length(way - towards * distance)) : 0;
+    queue.light.set(i, queue.light[i] * left);
+    if (light.shadows) queue.rays.tmax[i] = static_cast<float>(std::max(distance, 0.0));
+  }
+}
+
+/// Hits without highlights.
+ShadingColumns dull(const ShadingColumns& c) {
+  ShadingColumns without = c;
+  std::fill(std::begin(without.specular), std::end(without.specular), 0.0f);
+  return without;
+}
+
 /// Queues the rays to one light.
 void push_shadow_rays(const RenderContext& context, const Wavefront& wavefront, const InteractionBlock& found,
                       const LightSource& light, const ShadingColumns& c, ShadowQueue& queue) {
   const std::size_t first = queue.size();
   ShadowColumns out = end_of(queue, c.count);
-  render_code(context.isa).shadow_rays(found, light, c, out);
+  if (light.highlights)
+    render_code(context.isa).shadow_rays(found, light, c, out);
+  else
+    render_code(context.isa).shadow_rays(found, light, dull(c), out);
   queue.resize_uninitialized(out.size);
   if (light.list != kNoLightList) {
     keep_listed(context, wavefront, found, light.list, c, first, queue);
     out.size = queue.size();
   }
+  if (!light.directional && (light.fade.fades() || light.tightness > 0)) fade_light(light, first, queue);
   const Ray like;
   std::fill_n(queue.rays.tmin.data() + first, out.size - first, like.tmin);
-  std::fill_n(queue.rays.tmax.data() + first, out.size - first, light.directional ? like.tmax : kBeforeLight);
+  // A ray of no length meets nothing.
+  const float tmax = !light.shadows ? 0 : light.directional ? like.tmax : kBeforeLight;
+  std::fill_n(queue.rays.tmax.data() + first, out.size - first, tmax);
+  if (light.from_place) end_light(light, first, queue);
 }
 
 /// Which points of the area lights the hit of a ray asks.

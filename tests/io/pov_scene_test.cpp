@@ -315,12 +315,88 @@ TEST(PovScene, SkiesArePatternsOfDirections) {
 
 TEST(PovScene, CamerasAreFrames) {
   const PovFiles files;
-  EXPECT_EQ(
-      files.section("#version 3.7;\nsphere { 0, 1 }", "camera"),
-      "{from: [0, 0, 0], frame: {right: [1.3333333333333333, 0, 0], up: [0, 1, 0], direction: [0, 0, 1]}}");
+  EXPECT_EQ(files.section("#version 3.7;\nsphere { 0, 1 }", "camera"),
+            "{from: [0, 0, 0], frame: {right: [1.33, 0, 0], up: [0, 1, 0], direction: [0, 0, 1]}}");
   EXPECT_EQ(
       files.section("#version 3.7;\ncamera { location -5*z right 2*x up y look_at 0 angle 90 }", "camera"),
       "{from: [0, 0, -5], frame: {right: [2, 0, 0], up: [0, 1, 0], direction: [0, 0, 1.0000000000000002]}}");
+}
+
+TEST(PovScene, CurvedCamerasKeepTheirVectors) {
+  const PovFiles files;
+  const auto camera = [&](const std::string& text) {
+    return files.section("#version 3.7;\ncamera { " + text + " }", "camera");
+  };
+  const std::string usual =
+      "from: [0, 0, 0], frame: {right: [1.33, 0, 0], up: [0, 1, 0], direction: [0, 0, 1]}}";
+  EXPECT_EQ(camera("fisheye"), "{projection: fisheye, angle: 90, " + usual);
+  EXPECT_EQ(camera("fisheye angle 200"), "{projection: fisheye, angle: 200, " + usual);
+  EXPECT_EQ(camera("ultra_wide_angle angle 0"), "{projection: ultra_wide_angle, angle: 90, " + usual);
+  // Whose angles nothing changes.
+  EXPECT_EQ(camera("omnimax angle 50"), "{projection: omnimax, " + usual);
+  EXPECT_EQ(camera("panoramic angle 50"), "{projection: panoramic, " + usual);
+  EXPECT_EQ(camera("cylinder 1 angle 100"), "{projection: cylindrical, angle: 100, axis: up, " + usual);
+  EXPECT_EQ(camera("cylinder 2"), "{projection: cylindrical, angle: 90, axis: right, " + usual);
+  EXPECT_EQ(camera("cylinder 3"),
+            "{projection: cylindrical, angle: 90, axis: up, along_axis: orthographic, " + usual);
+  EXPECT_EQ(camera("cylinder 4"),
+            "{projection: cylindrical, angle: 90, axis: right, along_axis: orthographic, " + usual);
+  EXPECT_EQ(camera("spherical"), "{projection: spherical, angle: [360, 180], " + usual);
+  EXPECT_EQ(camera("spherical angle 90"), "{projection: spherical, angle: [90, 45], " + usual);
+  EXPECT_EQ(camera("spherical angle 90 60"), "{projection: spherical, angle: [90, 60], " + usual);
+  // A spherical picture is not mirrored, but upside down.
+  EXPECT_EQ(
+      camera("spherical right -x"),
+      "{projection: spherical, angle: [360, 180], from: [0, 0, 0], frame: {right: [1, 0, 0], up: [0, -1, "
+      "0], direction: [0, 0, 1]}}");
+  EXPECT_EQ(files.error("#version 3.7;\ncamera { cylinder 5 }\nsphere { 0, 1 }"),
+            "scene.pov:2:10: expected a cylinder from 1 to 4, found 5");
+  EXPECT_EQ(
+      files.error("#version 3.7;\ncamera { fisheye angle 400 }\nsphere { 0, 1 }"),
+      "scene.pov:2:1: a 'fisheye' camera of 400 degrees cannot be shown; expected more than 0, at most 360");
+  EXPECT_EQ(files.warnings("#version 3.7;\ncamera { fisheye aperture 1 blur_samples 9 }\nsphere { 0, 1 }"),
+            "scene.pov:2:1: warning: all is sharp that a 'fisheye' camera sees\n");
+}
+
+TEST(PovScene, LightsHaveTheirShape) {
+  const PovFiles files;
+  const auto lights = [&](const std::string& text) {
+    return files.section("#version 3.7;\nlight_source { <0,5,0>, rgb 1 " + text + " }", "lights");
+  };
+  EXPECT_EQ(lights("fade_distance 3 fade_power 2"),
+            "[{point: {position: [0, 5, 0], color: [1, 1, 1], fade: {distance: 3, power: 2}}}]");
+  // One of both alone means nothing.
+  EXPECT_EQ(lights("fade_power 2"), "[{point: {position: [0, 5, 0], color: [1, 1, 1]}}]");
+  EXPECT_EQ(lights("shadowless"),
+            "[{point: {position: [0, 5, 0], color: [1, 1, 1], shadows: false, highlights: false}}]");
+  EXPECT_EQ(
+      lights("spotlight point_at x tightness 10 fade_distance 3 fade_power 2"),
+      "[{spot: {position: [0, 5, 0], at: [1, 0, 0], outer_angle: 45, inner_angle: 30, tightness: 10, color: "
+      "[1, 1, 1], fade: {distance: 3, power: 2}}}]");
+  // The light ends at the radius, sharply.
+  EXPECT_EQ(lights("spotlight point_at x radius 40 falloff 20"),
+            "[{spot: {position: [0, 5, 0], at: [1, 0, 0], outer_angle: 40, inner_angle: 40, falloff: false, "
+            "color: [1, 1, 1]}}]");
+  EXPECT_EQ(lights("area_light 2*x, 4*z, 1, 1"), "[{point: {position: [0, 5, 0], color: [1, 1, 1]}}]");
+  // Points at the ends count half.
+  EXPECT_EQ(
+      lights("area_light 2*x, 4*z, 3, 1"),
+      "[{point: {position: [-1, 5, 0], color: [0.25, 0.25, 0.25]}}, {point: {position: [0, 5, 0], color: "
+      "[0.5, 0.5, 0.5]}}, {point: {position: [1, 5, 0], color: [0.25, 0.25, 0.25]}}]");
+  EXPECT_EQ(
+      lights("cylinder point_at 0 radius 2 falloff 3 tightness 1 fade_distance 3 fade_power 2"),
+      "[{directional: {direction: [0, -5, 0], from: [0, 5, 0], beam: {outer_radius: 3, inner_radius: 2, "
+      "tightness: 1}, color: [1, 1, 1], fade: {distance: 3, power: 2}}}]");
+  EXPECT_EQ(lights("cylinder point_at 0"),
+            "[{directional: {direction: [0, -5, 0], from: [0, 5, 0], beam: {outer_radius: 1, inner_radius: "
+            "0.75}, color: [1, 1, 1]}}]");
+  // It points to z unless told otherwise.
+  EXPECT_EQ(lights("parallel"),
+            "[{directional: {direction: [0, -5, 1], from: [0, 5, 0], color: [1, 1, 1]}}]");
+  const std::string round = lights("area_light 2*x, 2*z, 2, 2 circular");
+  EXPECT_NE(round.find("position: [0.7071067811865"), std::string::npos) << round;
+  EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 17, 2 }"),
+            "scene.pov:2:48: warning: lights have at most 8 points along a side\n");
 }
 
 TEST(PovScene, LightsAndSurroundings) {
@@ -335,7 +411,7 @@ TEST(PovScene, LightsAndSurroundings) {
             "[{point: {position: [1, 2, 3], color: [1, 1, 1]}}, {spot: {position: [0, 5, 0], at: [0, 0, 0], "
             "outer_angle: 20, "
             "inner_angle: 10, color: [0.5, 0.5, 0.5], falloff: false}}, {directional: {direction: [1, -5, "
-            "0], color: [1, 1, "
+            "0], from: [0, 5, 0], color: [1, 1, "
             "1]}}]");
   EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
   EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");

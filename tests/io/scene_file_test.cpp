@@ -73,6 +73,49 @@ TEST(SceneFile, CameraHasAFrame) {
         "scene.yaml:2:15: expected 'frame' or 'fov', not both"}});
 }
 
+TEST(SceneFile, ReadsCurvedProjections) {
+  const auto read = [](const std::string& text) {
+    return SceneFiles().load_v1("camera: {" + text + "}").camera;
+  };
+  Camera camera = read("projection: spherical, angle: [200, 90]");
+  EXPECT_EQ(camera.projection, Projection::spherical);
+  EXPECT_EQ(camera.angle[0], 200);
+  EXPECT_EQ(camera.angle[1], 90);
+  camera = read("projection: fisheye, angle: 120");
+  EXPECT_EQ(camera.projection, Projection::fisheye);
+  EXPECT_EQ(camera.angle[0], 120);
+  EXPECT_EQ(camera.angle[1], 0);
+  camera = read("projection: cylindrical, axis: right, along_axis: orthographic, height: 3");
+  EXPECT_EQ(camera.projection, Projection::cylindrical);
+  EXPECT_EQ(camera.axis, CylinderAxis::right);
+  EXPECT_EQ(camera.along_axis, Projection::orthographic);
+  EXPECT_EQ(camera.height, 3);
+  for (const auto& [name, projection] : kProjections)
+    EXPECT_EQ(read(std::string("projection: ") + name).projection, projection);
+  test::expect_errors({
+      {"camera: {projection: fisheye, angle: 361}",
+       "scene.yaml:2:38: expected a number greater than 0 and at most 360, found '361'"},
+      {"camera: {projection: fisheye, angle: [90, 90]}",
+       "scene.yaml:2:38: a fisheye view has one angle; two are for a spherical view"},
+      {"camera: {projection: omnimax, aperture: 1}",
+       "scene.yaml:2:41: an omnimax view has no lens; 'aperture' is for perspective and orthographic views"},
+      {"camera: {projection: cylindrical, along_axis: fisheye}",
+       "scene.yaml:2:47: expected perspective or orthographic, found 'fisheye'"},
+  });
+  const auto warning = [](const std::string& text) {
+    const Scene scene = SceneFiles().load_v1("camera: {" + text + "}");
+    return scene.warnings.size() == 1 ? to_string(scene.warnings[0]) : "not one warning";
+  };
+  const auto ends = [&](const std::string& text, const std::string& end) {
+    EXPECT_TRUE(warning(text).ends_with(end)) << warning(text);
+  };
+  ends("fov: 30, projection: fisheye", "a fisheye view has an 'angle'");
+  ends("angle: 30", "a perspective view has a 'fov'");
+  ends("angle: 30, projection: panoramic", "a panoramic view has always the same angle");
+  ends("axis: right, projection: spherical", "a spherical view has no cylinder");
+  ends("height: 2, projection: cylindrical", "a cylindrical view has an 'angle'");
+}
+
 TEST(SceneFile, ReadsCaustics) {
   const auto read = [](const std::string& text) {
     return SceneFiles().load_v1("integrator: {kind: path" + text + "}\n").integrator.caustics;

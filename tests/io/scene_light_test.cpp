@@ -51,6 +51,46 @@ TEST(SceneLight, ReadsLampsWithoutArea) {
   EXPECT_EQ(sky.ground, (Color{0.1f, 0.2f, 0.3f}));
 }
 
+TEST(SceneLight, ReadsFadesAndLightsWithoutShadows) {
+  const Scene scene = SceneFiles().load_v1(
+      "lights:\n"
+      "  - point: {position: [1, 2, 3], fade: {distance: 4, power: 3}}\n"
+      "  - spot: {position: [0, 5, 0], fade: {distance: 2}, tightness: 5, shadows: false}\n"
+      "  - directional: {highlights: false, from: [1, 2, 3], fade: {distance: 5}, beam: {outer_radius: 2}}\n"
+      "  - point: {position: [1, 2, 3]}\n");
+  ASSERT_EQ(scene.lights.size(), 4u);
+  EXPECT_EQ(std::get<PointLight>(scene.lights[0]).fade, (LightFade{4, 3}));
+  EXPECT_FALSE(std::get<PointLight>(scene.lights[0]).falloff);
+  const auto& spot = std::get<SpotLight>(scene.lights[1]);
+  EXPECT_EQ(spot.fade, (LightFade{2, 2}));
+  EXPECT_EQ(spot.tightness, 5);
+  EXPECT_FALSE(spot.falloff);
+  EXPECT_FALSE(scene.light_traits[1].shadows);
+  EXPECT_TRUE(scene.light_traits[1].highlights);
+  EXPECT_FALSE(scene.light_traits[2].highlights);
+  const auto& far = std::get<DirectionalLight>(scene.lights[2]);
+  EXPECT_EQ(far.from, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(far.fade, (LightFade{5, 2}));
+  EXPECT_EQ(far.beam, (LightBeam{2, 0, 0}));
+  EXPECT_FALSE(std::get<PointLight>(scene.lights[3]).fade.fades());
+  expect_error("lights: [point: {position: [1, 2, 3], fade: {power: 3}}]", "a fade needs 'distance'");
+  expect_error("lights: [point: {position: [1, 2, 3], fade: {distance: 3}, falloff: true}]",
+               "expected 'fade' or 'falloff', not both");
+  expect_error("lights: [point: {position: [1, 2, 3], fade: {distance: 3}, power: [1, 1, 1]}]",
+               "expected 'fade' or 'power', not both");
+  expect_error("lights: [directional: {beam: {outer_radius: 1}}]",
+               "'beam' counts from a place: 'from' is missing");
+  expect_error("lights: [directional: {from: [0, 0, 0], beam: {outer_radius: 1, inner_radius: 2}}]",
+               "'inner_radius' is greater than 'outer_radius'");
+  expect_error("lights: [spot: {position: [1, 2, 3], tightness: -1}]", "expected a number of at least 0");
+  expect_error("lights: [spot: {position: [1, 2, 3], tightness: 1, power: [1, 1, 1]}]",
+               "expected 'tightness' or 'power', not both");
+  const Scene path =
+      SceneFiles().load_v1("integrator: {kind: path}\nlights: [directional: {shadows: false}]\n");
+  ASSERT_EQ(path.warnings.size(), 1u);
+  EXPECT_NE(to_string(path.warnings[0]).find("all light of 'path' has shadows"), std::string::npos);
+}
+
 // A lamp with an area is an object that glows. Its power is pi * area * radiance.
 TEST(SceneLight, LampsWithAnAreaAreObjects) {
   const Scene scene = SceneFiles().load_v1(

@@ -16,19 +16,35 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-/// A camera as POV-Ray has it.
+/// A projection of scene files, and the angle that it has in POV-Ray if none is given.
+struct CameraKind {
+  std::string_view name, projection;
+  bool has_angle = false;
+  double usual_angle = 90;
+};
+constexpr CameraKind kCameraKinds[] = {{"perspective", "perspective", true},
+                                       {"orthographic", "orthographic"},
+                                       {"fisheye", "fisheye", true},
+                                       {"ultra_wide_angle", "ultra_wide_angle", true},
+                                       {"omnimax", "omnimax"},
+                                       {"panoramic", "panoramic"},
+                                       {"cylinder", "cylindrical", true},
+                                       {"spherical", "spherical", true, 360}};
+
+/// A camera as POV-Ray has it, which is 1.33 wide, not 4/3.
 struct PovCamera {
-  Vec3d location{0, 0, 0}, direction{0, 0, 1}, right{4.0 / 3, 0, 0}, up{0, 1, 0}, sky{0, 1, 0};
+  std::string_view kind = "perspective";
+  Vec3d location{0, 0, 0}, direction{0, 0, 1}, right{1.33, 0, 0}, up{0, 1, 0}, sky{0, 1, 0};
   std::optional<Vec3d> look_at, focal_point;
-  std::optional<double> angle;
-  bool orthographic = false, has_angle = false, has_size = false;
+  std::optional<double> angle, vertical_angle;
+  int cylinder = 1;  ///< 1 to 4
+  bool has_angle = false, has_size = false;
   double aperture = 0, blur_samples = 0;
   Moves moves;
-};
 
-constexpr std::array<std::string_view, 10> kOtherCameras{
-    "fisheye", "ultra_wide_angle",        "omnimax",      "panoramic", "cylinder", "spherical", "mesh_camera",
-    "stereo",  "omni_directional_stereo", "test_camera_1"};
+  bool orthographic() const { return kind == "orthographic"; }
+  bool curved() const { return kind != "perspective" && kind != "orthographic"; }
+};
 
 void read_camera(Context& context, const Block& block, PovCamera& c) {
   Arguments a(context, block);
@@ -57,10 +73,17 @@ void read_camera(Context& context, const Block& block, PovCamera& c) {
     } else if (a.take_word("angle")) {
       c.has_angle = true;
       if (a.is_numbers()) c.angle = a.vector("an angle").x;
-    } else if (a.take_word("orthographic")) {
-      c.orthographic = true;
-    } else if (a.take_word("perspective")) {
-      c.orthographic = false;
+      if (a.is_numbers()) c.vertical_angle = a.number("an angle");
+    } else if (const auto* const kind = std::ranges::find(kCameraKinds, a.peek_word(), &CameraKind::name);
+               kind != std::end(kCameraKinds)) {
+      a.take();
+      c.kind = kind->name;
+      if (c.kind == "cylinder") {
+        const double number = a.number("the number of a kind of cylinder");
+        if (!(number == 1 || number == 2 || number == 3 || number == 4))
+          context.fail(where, fmt::format("expected a cylinder from 1 to 4, found {}", number));
+        c.cylinder = static_cast<int>(number);
+      }
     } else if (a.take_word("aperture")) {
       c.aperture = a.number("a number");
     } else if (a.take_word("focal_point")) {
@@ -69,11 +92,7 @@ void read_camera(Context& context, const Block& block, PovCamera& c) {
       c.blur_samples = a.number("a number");
       if (a.is_numbers()) a.take();
     } else {
-      const std::string_view word = a.peek_word();
       a.take();
-      if (std::ranges::find(kOtherCameras, word) != kOtherCameras.end())
-        context.tell("camera kind", where,
-                     fmt::format("a camera that is '{}' is shown in perspective", word));
     }
   }
 }
@@ -98,13 +117,40 @@ void look(Context& context, const Place& where, PovCamera& c) {
   c.right = right * (left_handed ? across : -across);
 }
 
+/// The keys of a curved projection; its vectors are those of the world.
+void put_curved(Context& context, const Place& where, PovCamera& c, Node node) {
+  Tree& tree = context.tree;
+  const CameraKind& kind = *std::ranges::find(kCameraKinds, c.kind, &CameraKind::name);
+  if (kind.has_angle) {
+    // An angle of 0 is none.
+    const double angle = c.angle.value_or(0) != 0 ? *c.angle : kind.usual_angle;
+    const double vertical = c.vertical_angle.value_or(0) != 0 ? *c.vertical_angle : angle / 2;
+    for (const double degrees : {angle, vertical})
+      if (!(degrees > 0 && degrees <= 360))
+        context.fail(where, fmt::format("a '{}' camera of {} degrees cannot be shown; expected more than 0, "
+                                        "at most 360",
+                                        c.kind, degrees));
+    const double both[] = {angle, vertical};
+    tree.put(node, "angle", c.kind == "spherical" ? tree.numbers(where, both) : tree.number(where, angle));
+  }
+  if (c.kind == "cylinder") {
+    tree.put(node, "axis", tree.word(where, c.cylinder % 2 == 1 ? "up" : "right"));
+    if (c.cylinder > 2) tree.put(node, "along_axis", tree.word(where, "orthographic"));
+  }
+  // There the picture is turned by `right` and `up` as axes, whichever their hand is.
+  if (c.kind == "spherical" && dot(cross(c.up, c.direction), c.right) < 0)
+    c.right = c.right * -1.0, c.up = c.up * -1.0;
+  if (c.aperture > 0 && c.blur_samples > 0)
+    context.tell("curved blur", where, fmt::format("all is sharp that a '{}' camera sees", c.kind));
+}
+
 }  // namespace
 
 Node camera_node(Context& context, const Block* block) {
   PovCamera c;
   Place where;
   if (block != nullptr) read_camera(context, *block, c), where = block->where;
-  if (c.angle && !c.orthographic) {
+  if (c.angle && c.kind == "perspective") {
     if (!(*c.angle > 0 && *c.angle < 180))
       context.fail(where, fmt::format("a camera of {} degrees cannot be meant", *c.angle));
     const double size = length(c.direction);
@@ -113,7 +159,7 @@ Node camera_node(Context& context, const Block* block) {
   }
   const double before = length(c.direction);
   look(context, where, c);
-  if (c.orthographic && (c.has_angle || !c.has_size)) {
+  if (c.orthographic() && (c.has_angle || !c.has_size)) {
     // As wide as the view in perspective at what it looks at.
     const double distance = c.look_at ? length(*c.look_at - c.location) : before;
     double scale = before > 0 ? distance / before : 1;
@@ -125,12 +171,15 @@ Node camera_node(Context& context, const Block* block) {
   c.right = m.vector(c.right), c.up = m.vector(c.up);
   Tree& tree = context.tree;
   const Node node = tree.map(where), frame = tree.map(where);
-  if (c.orthographic) tree.put(node, "projection", tree.word(where, "orthographic"));
+  if (c.kind != "perspective")
+    tree.put(node, "projection",
+             tree.word(where, std::ranges::find(kCameraKinds, c.kind, &CameraKind::name)->projection));
+  if (c.curved()) put_curved(context, where, c, node);
   tree.put(node, "from", tree.vector(where, c.location));
   tree.put(frame, "right", tree.vector(where, c.right)), tree.put(frame, "up", tree.vector(where, c.up));
   tree.put(frame, "direction", tree.vector(where, c.direction));
   tree.put(node, "frame", frame);
-  if (c.aperture > 0 && c.blur_samples > 0) {
+  if (c.aperture > 0 && c.blur_samples > 0 && !c.curved()) {
     const Vec3d at = m.point(c.focal_point.value_or(Vec3d{0, 0, 0}));
     if (dot(at - c.location, c.direction) > 0) {
       tree.put(node, "aperture", tree.number(where, c.aperture));
@@ -142,108 +191,192 @@ Node camera_node(Context& context, const Block* block) {
   return node;
 }
 
+namespace {
+
+/// The points that a light of some size stands for, along one of its sides.
+struct LightPoints {
+  Vec3d side{0, 0, 0};
+  int count = 1;
+};
+
+/// A light as POV-Ray has it.
+struct PovLight {
+  Vec3d location{0, 0, 0}, point_at{0, 0, 1};
+  PovColor color{{1, 1, 1}};
+  bool spot = false, cylinder = false, parallel = false, shadowless = false, circular = false;
+  std::optional<double> radius, falloff;
+  double tightness = 0, fade_distance = 0, fade_power = 0;
+  std::array<LightPoints, 2> area;
+  Moves moves;
+};
+
+/// The most points along a side: more make pictures slow and hardly other.
+constexpr int kMostLightPoints = 8;
+
+void read_area(Context& context, Arguments& l, PovLight& light) {
+  for (LightPoints& points : light.area) points.side = l.vector("a side of the light");
+  for (LightPoints& points : light.area) {
+    const Place where = l.where();
+    const double count = l.number("how many points there are");
+    if (!(count >= 1))
+      context.fail(where, fmt::format("expected at least 1 point along a side of a light, found {}", count));
+    points.count = static_cast<int>(std::min(std::floor(count), 1e6));
+    if (points.count > kMostLightPoints)
+      context.tell("area_light", where,
+                   fmt::format("lights have at most {} points along a side", kMostLightPoints));
+    points.count = std::min(points.count, kMostLightPoints);
+  }
+}
+
+void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body) {
+  while (!l.at_end()) {
+    const Place at = l.where();
+    if (take_moves(context, l, light.moves)) continue;
+    if (const std::shared_ptr<const Block> inner = l.peek_shared_block()) {
+      l.take();
+      if (inner->keyword == "light_source") {
+        Arguments base(context, *inner);
+        light.location = base.vector("a place"), light.color = base.color("a colour");
+        read_light(context, base, light, body);
+      } else if (inner->keyword == "looks_like" || inner->keyword == "projected_through") {
+        for (const Element& e : inner->elements)
+          if (const auto* const object = std::get_if<std::shared_ptr<const Block>>(&e.value);
+              object != nullptr && inner->keyword == "looks_like")
+            body.object = *object;
+        if (inner->keyword != "looks_like")
+          context.tell("projected_through", at, "'projected_through' has no meaning here");
+      } else if (inner->keyword != "photons") {
+        context.tell(fmt::format("light {}", inner->keyword), at,
+                     fmt::format("'{}' of a light has no meaning here", inner->keyword));
+      }
+    } else if (l.take_word("spotlight")) {
+      light.spot = true;
+    } else if (l.take_word("cylinder")) {
+      light.cylinder = true;
+    } else if (l.take_word("parallel")) {
+      light.parallel = true;
+    } else if (l.take_word("point_at")) {
+      light.point_at = l.vector("a point");
+    } else if (l.take_word("radius")) {
+      light.radius = l.number("an angle");
+    } else if (l.take_word("falloff")) {
+      light.falloff = l.number("an angle");
+    } else if (l.take_word("tightness")) {
+      light.tightness = l.number("a number");
+    } else if (l.take_word("fade_distance")) {
+      light.fade_distance = l.number("a number");
+    } else if (l.take_word("fade_power")) {
+      light.fade_power = l.number("a number");
+    } else if (l.take_word("shadowless")) {
+      light.shadowless = l.flag();
+    } else if (l.take_word("area_light")) {
+      read_area(context, l, light);
+    } else if (l.take_word("circular")) {
+      light.circular = l.flag();
+    } else if (l.is_numbers()) {
+      light.color = l.color("a colour");
+    } else {
+      const std::string_view word = l.peek_word();
+      l.take();
+      if (word == "adaptive" || word == "jitter" || word == "orient" || word == "media_interaction" ||
+          word == "media_attenuation" || word == "area_illumination") {
+        if (l.is_numbers()) l.take();
+      }
+    }
+  }
+}
+
+/// The keys of a light that are the same at each of its points.
+void put_light(Tree& tree, const Place& where, const PovLight& light, Node keys) {
+  if (light.shadowless)
+    // Such a light shows no highlights, either.
+    tree.put(keys, "shadows", tree.flag(where, false)), tree.put(keys, "highlights", tree.flag(where, false));
+  if (!(light.fade_distance > 0 && light.fade_power > 0)) return;
+  const Node fade = tree.map(where);
+  tree.put(fade, "distance", tree.number(where, light.fade_distance));
+  tree.put(fade, "power", tree.number(where, light.fade_power));
+  tree.put(keys, "fade", fade);
+}
+
+/// Of a light that is a cylinder. A radius of 0 means that it ends sharply.
+void put_beam(Tree& tree, const Place& where, const PovLight& light, Node keys) {
+  const double outer = std::max(light.falloff.value_or(1), 1e-9), radius = light.radius.value_or(0.75);
+  const Node beam = tree.map(where);
+  tree.put(beam, "outer_radius", tree.number(where, outer));
+  tree.put(beam, "inner_radius", tree.number(where, radius > 0 ? std::min(radius, outer) : outer));
+  if (light.tightness > 0) tree.put(beam, "tightness", tree.number(where, light.tightness));
+  tree.put(keys, "beam", beam);
+}
+
+/// Where point (i, k) of a light of some size is, as fractions of its sides from the middle.
+std::array<double, 2> light_place(const PovLight& light, int i, int k) {
+  const auto part = [](int number, int count) { return count > 1 ? number / (count - 1.0) - 0.5 : 0.0; };
+  const double x = part(i, light.area[0].count), y = part(k, light.area[1].count);
+  const double size = std::sqrt(x * x + y * y);
+  // Squares about the middle become circles.
+  const double scale = light.circular && size > 0 ? std::max(std::abs(x), std::abs(y)) / size : 1;
+  return {x * scale, y * scale};
+}
+
+/// The part of the light of one of `count` points along a side: those at both ends count half.
+double light_part(int number, int count) {
+  if (count == 1) return 1;
+  return (number == 0 || number == count - 1 ? 0.5 : 1) / (count - 1);
+}
+
+}  // namespace
+
 LightBody add_light(Context& context, const Block& block, const Affine& to_world) {
   Arguments a(context, block);
   Tree& tree = context.tree;
   const Place& where = block.where;
-  Vec3d location{0, 0, 0}, point_at{0, 0, 0};
-  PovColor color{{1, 1, 1}};
-  bool spot = false, parallel = false, shadowless = false;
-  double radius = 30, falloff = 45, fade_distance = 0, fade_power = 0;
-  Moves moves;
+  PovLight light;
   LightBody body;
-  const auto read = [&](auto&& self, Arguments& l) -> void {
-    while (!l.at_end()) {
-      const Place at = l.where();
-      if (take_moves(context, l, moves)) continue;
-      if (const std::shared_ptr<const Block> inner = l.peek_shared_block()) {
-        l.take();
-        if (inner->keyword == "light_source") {
-          Arguments base(context, *inner);
-          location = base.vector("a place"), color = base.color("a colour");
-          self(self, base);
-        } else if (inner->keyword == "looks_like" || inner->keyword == "projected_through") {
-          for (const Element& e : inner->elements)
-            if (const auto* const object = std::get_if<std::shared_ptr<const Block>>(&e.value);
-                object != nullptr && inner->keyword == "looks_like")
-              body.object = *object;
-          if (inner->keyword != "looks_like")
-            context.tell("projected_through", at, "'projected_through' has no meaning here");
-        } else if (inner->keyword != "photons") {
-          context.tell(fmt::format("light {}", inner->keyword), at,
-                       fmt::format("'{}' of a light has no meaning here", inner->keyword));
-        }
-      } else if (l.take_word("spotlight")) {
-        spot = true;
-      } else if (l.take_word("cylinder")) {
-        spot = parallel = true;
-        context.tell("cylinder light", at, "a light that is a cylinder shines everywhere in its direction");
-      } else if (l.take_word("parallel")) {
-        parallel = true;
-      } else if (l.take_word("point_at")) {
-        point_at = l.vector("a point");
-      } else if (l.take_word("radius")) {
-        radius = l.number("an angle");
-      } else if (l.take_word("falloff")) {
-        falloff = l.number("an angle");
-      } else if (l.take_word("tightness")) {
-        if (l.number("a number") != 0)
-          context.tell("tightness", at, "'tightness' of a light has no meaning here");
-      } else if (l.take_word("fade_distance")) {
-        fade_distance = l.number("a number");
-      } else if (l.take_word("fade_power")) {
-        fade_power = l.number("a number");
-      } else if (l.take_word("shadowless")) {
-        shadowless = l.flag();
-      } else if (l.take_word("area_light")) {
-        context.tell("area_light", at, "area lights are points here, with sharp shadows");
-        while (l.is_numbers()) l.take();
-      } else if (l.is_numbers()) {
-        color = l.color("a colour");
-      } else {
-        const std::string_view word = l.peek_word();
-        l.take();
-        if (word == "adaptive" || word == "jitter" || word == "circular" || word == "orient" ||
-            word == "media_interaction" || word == "media_attenuation" || word == "area_illumination") {
-          if (l.is_numbers()) l.take();
-        }
-      }
-    }
-  };
-  if (a.peek_block() == nullptr) location = a.vector("a place"), color = a.color("a colour");
-  read(read, a);
-  const Affine all = to_world * moves.all;
-  const Vec3d at = all.point(location), target = all.point(point_at);
-  const Vec3d rgb = color.rgb;
-  if (std::min({color.rgb.x, color.rgb.y, color.rgb.z}) < 0)
+  if (a.peek_block() == nullptr) light.location = a.vector("a place"), light.color = a.color("a colour");
+  read_light(context, a, light, body);
+  const Affine all = to_world * light.moves.all;
+  const Vec3d middle = all.point(light.location), target = all.point(light.point_at);
+  const Vec3d way = target - middle;
+  const Vec3d rgb = light.color.rgb;
+  if (std::min({rgb.x, rgb.y, rgb.z}) < 0)
     context.tell("negative light", where, "light that takes away light is left out");
-  if (shadowless)
-    context.tell("shadowless", where, "'shadowless' has no meaning here: each light casts shadows");
-  const Node keys = tree.map(where);
-  const auto add = [&](std::string_view kind) { Tree::push(context.lights, tree.map(where, kind, keys)); };
-  const Vec3d way = target - at;
-  if (parallel && length(way) > 0) {
-    tree.put(keys, "direction", tree.vector(where, way)),
-        tree.put(keys, "color", color_node(tree, where, rgb));
-    add("directional");
-  } else if (spot && length(way) > 0) {
-    tree.put(keys, "position", tree.vector(where, at)), tree.put(keys, "at", tree.vector(where, target));
-    tree.put(keys, "outer_angle", tree.number(where, std::clamp(std::max(radius, falloff), 1e-3, 180.0)));
-    tree.put(keys, "inner_angle", tree.number(where, std::clamp(std::min(radius, falloff), 0.0, 180.0)));
-    tree.put(keys, "color", color_node(tree, where, rgb));
-    tree.put(keys, "falloff", tree.flag(where, false));
-    add("spot");
-  } else {
-    tree.put(keys, "position", tree.vector(where, at));
-    tree.put(keys, "color", color_node(tree, where, rgb));
-    add("point");
-  }
-  if (fade_distance > 0 && fade_power > 0)
-    context.tell("fade", where,
-                 "light does not fade with the distance: 'fade_distance' and 'fade_power' are left out");
+  const bool points = length(way) > 0;
+  for (int i = 0; i < light.area[0].count; ++i)
+    for (int k = 0; k < light.area[1].count; ++k) {
+      const std::array<double, 2> place = light_place(light, i, k);
+      const Vec3d at =
+          middle + all.vector(light.area[0].side) * place[0] + all.vector(light.area[1].side) * place[1];
+      const double part = light_part(i, light.area[0].count) * light_part(k, light.area[1].count);
+      const Node keys = tree.map(where);
+      const char* kind = "point";
+      if ((light.parallel || light.cylinder) && points) {
+        kind = "directional";
+        // Of a light of some size the directions differ, but all meet where it points to.
+        tree.put(keys, "direction", tree.vector(where, target - at));
+        tree.put(keys, "from", tree.vector(where, at));
+        if (light.cylinder) put_beam(tree, where, light, keys);
+      } else if (light.spot && points) {
+        kind = "spot";
+        const double radius = light.radius.value_or(30),
+                     falloff = std::max(light.falloff.value_or(45), radius);
+        tree.put(keys, "position", tree.vector(where, at));
+        // The cones of all points of a light of some size have the same middle there.
+        tree.put(keys, "at", tree.vector(where, target));
+        tree.put(keys, "outer_angle", tree.number(where, std::clamp(falloff, 1e-3, 180.0)));
+        tree.put(keys, "inner_angle", tree.number(where, std::clamp(radius, 0.0, 180.0)));
+        if (light.tightness > 0) tree.put(keys, "tightness", tree.number(where, light.tightness));
+        if (!(light.fade_distance > 0 && light.fade_power > 0))
+          tree.put(keys, "falloff", tree.flag(where, false));
+      } else {
+        tree.put(keys, "position", tree.vector(where, at));
+      }
+      tree.put(keys, "color", color_node(tree, where, rgb * part));
+      put_light(tree, where, light, keys);
+      Tree::push(context.lights, tree.map(where, kind, keys));
+    }
   if (body.object) {
-    body.moves.add({Move::Kind::translate, location, {}, where});
-    body.moves.add(moves);
+    body.moves.add({Move::Kind::translate, light.location, {}, where});
+    body.moves.add(light.moves);
   }
   return body;
 }
