@@ -21,7 +21,7 @@ using MaybeForm = std::optional<ExactForm>;
 
 std::shared_ptr<const HeightGrid> read_file(SceneLoad& load, const YamlNode& node,
                                             HeightInterpolation interpolation) {
-  return read_image_file(load, node, [&](const std::string& path) {
+  return read_named_file(load, node, [&](const std::string& path) {
     HeightImage image = read_heights(path, kMaxHeightSide, kMaxHeightSamples);
     return image.words.empty()
                ? HeightGrid::from_floats(image.columns, image.rows, std::move(image.floats), interpolation)

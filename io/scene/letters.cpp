@@ -29,7 +29,7 @@ std::u32string code_points(std::string_view text) {
 std::optional<ExactForm> finish(const ShapeNode& at, TextKeys& keys) {
   const YamlNode &font = at.fields.require("font"), &text = at.fields.require("text");
   const std::string words = at.load.values.text(text);
-  WrittenText written = read_image_file(at.load, font, [&](const std::string& path) {
+  WrittenText written = read_named_file(at.load, font, [&](const std::string& path) {
     return write_text(path, code_points(words), keys.advance);
   });
   if (!written.missing.empty()) {

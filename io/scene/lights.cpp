@@ -251,7 +251,7 @@ struct EnvironmentFile {
 };
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, EnvironmentFile& file) {
   file.picture =
-      std::make_shared<const EnvironmentPicture>(read_image_file(load, node, read_environment_image));
+      std::make_shared<const EnvironmentPicture>(read_named_file(load, node, read_environment_image));
 }
 std::string schema_of(Schema&, const Range&, const EnvironmentFile&) { return Schema::file(); }
 

@@ -175,16 +175,17 @@ std::string spheres_schema(Schema& schema);
 std::string elements_schema(Schema& schema);
 std::string blends_schema(Schema& schema);
 
-/// Calls read(path) for the image file that `node` names. An Error that it throws, whose text may begin with
-/// the path, is thrown again at the place of the name, since an image has no lines.
+/// Calls read(path) for the file that `node` names, such as an image or a font. An Error that it throws, whose
+/// text may begin with the path, is thrown again at the place of the name, since such a file has no lines.
 template <class Read>
-auto read_image_file(SceneLoad& load, const YamlNode& node, Read&& read) {
+auto read_named_file(SceneLoad& load, const YamlNode& node, Read&& read) {
   const std::string path = load.values.existing_file(node);
   try {
     return read(path);
   } catch (const Error& e) {
     const std::string what = e.what();
-    throw Error(node.where(), quote(path, 1000) + what.substr(what.find(path) == 0 ? path.size() : 0));
+    const bool has_path = what.starts_with(path);
+    throw Error(node.where(), quote(path, 1000) + (has_path ? what.substr(path.size()) : ": " + what));
   }
 }
 
