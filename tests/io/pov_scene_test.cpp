@@ -265,6 +265,9 @@ TEST(PovScene, PatternsAreTextures) {
       color("julia <0.25, -0.5>, 20 exponent 3 interior 1, 2"),
       "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
       "interior_factor: 2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  // Out of order, as POV-Ray shows it.
+  EXPECT_EQ(color("planar color_map { [0.5 rgb 1] [0 rgb 0] [1 rgb 0.25] }"),
+            "{planar: {map: [[0.5, [1, 1, 1]], [0.5, [0.125, 0.125, 0.125]], [1, [0.25, 0.25, 0.25]]]}}");
   // Places outside of 0 to 1 show what lies between them.
   EXPECT_EQ(color("boxed color_map { [-1 rgb 0] [1 rgb 1] }"),
             "{boxed: {map: [[0, [0.5, 0.5, 0.5]], [1, [1, 1, 1]]]}}");

@@ -36,6 +36,25 @@ PovColor color_at(const std::vector<PigmentEntry>& map, double at) {
   return color_of(map.back());
 }
 
+/// A map whose places ascend and that shows the same. POV-Ray looks for the first place that is not below the
+/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing itself.
+std::vector<PigmentEntry> in_order(const std::vector<PigmentEntry>& map) {
+  std::vector<PigmentEntry> all;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double reached = all.empty() ? map[i].at : all.back().at;
+    if (map[i].at < reached) continue;
+    if (i > 0 && map[i - 1].at < reached && map[i].at > reached) {
+      PigmentEntry begin = map[i - 1];
+      if (begin.pigment == nullptr && map[i].pigment == nullptr)
+        begin.color = blend(begin.color, map[i].color, (reached - begin.at) / (map[i].at - begin.at));
+      begin.at = reached;
+      all.push_back(std::move(begin));
+    }
+    all.push_back(map[i]);
+  }
+  return all;
+}
+
 /// Reads pigments.
 class PigmentReader {
  public:
@@ -97,7 +116,7 @@ class PigmentReader {
     } else if (k == "color_map" || k == "colour_map" || k == "pigment_map" || k == "texture_map") {
       p.entries.clear();
       read_map(block, p);
-      if (!p.is_average) std::ranges::stable_sort(p.entries, {}, &PigmentEntry::at);
+      if (!p.is_average) p.entries = in_order(p.entries);
     } else if (k == "image_map") {
       p.is_average = false, p.entries.clear();
       patterns_.take_image(block, p.pattern);
