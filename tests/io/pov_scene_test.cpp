@@ -412,10 +412,8 @@ TEST(PovScene, LightsAndSurroundings) {
       "light_source { 5*y, rgb 1 parallel point_at x }\n";
   EXPECT_EQ(files.section(scene, "lights"),
             "[{point: {position: [1, 2, 3], color: [1, 1, 1]}}, {spot: {position: [0, 5, 0], at: [0, 0, 0], "
-            "outer_angle: 20, "
-            "inner_angle: 10, color: [0.5, 0.5, 0.5], falloff: false}}, {directional: {direction: [1, -5, "
-            "0], from: [0, 5, 0], color: [1, 1, "
-            "1]}}]");
+            "outer_angle: 20, inner_angle: 10, falloff: false, color: [0.5, 0.5, 0.5]}}, {directional: "
+            "{direction: [1, -5, 0], from: [0, 5, 0], color: [1, 1, 1]}}]");
   EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
   EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");
   EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 7}");
