@@ -265,6 +265,8 @@ TEST(PovScene, PatternsAreTextures) {
       color("julia <0.25, -0.5>, 20 exponent 3 interior 1, 2"),
       "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
       "interior_factor: 2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(color("function { x + 0.5 } color_map { [0 rgb 0] [1 rgb x] }"),
+            "{function: {f: \"x + 0.5\", map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}");
   // Out of order, as POV-Ray shows it.
   EXPECT_EQ(color("planar color_map { [0.5 rgb 1] [0 rgb 0] [1 rgb 0.25] }"),
             "{planar: {map: [[0.5, [1, 1, 1]], [0.5, [0.125, 0.125, 0.125]], [1, [0.25, 0.25, 0.25]]]}}");
@@ -488,7 +490,7 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
       files.warnings(
           "#version 3.7;\n#declare F = function { internal(76) } isosurface { function { F(x, y, z) }" + end),
       "scene.pov:2:40: warning: this function contains noise (f_noise3d or f_noise_generator), which "
-      "expressions here do not have; the object is left out\n");
+      "expressions here do not have; it is left out\n");
 }
 
 TEST(PovScene, WhatIsAskedStandsWhereItWasFound) {

@@ -187,10 +187,9 @@ std::optional<std::string> function_text(Context& context, const Function& funct
     return text;
   } catch (const Unwritable& reason) {
     context.warn(where, "this function contains " + reason.why +
-                            ", which expressions here do not have; the object is left out");
+                            ", which expressions here do not have; it is left out");
   } catch (const std::exception& error) {
-    context.warn(
-        where, fmt::format("this function is no expression here: {}; the object is left out", error.what()));
+    context.warn(where, fmt::format("this function is no expression here: {}; it is left out", error.what()));
   }
   return std::nullopt;
 }

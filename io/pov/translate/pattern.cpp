@@ -30,7 +30,6 @@ constexpr PatternName kNames[] = {
     {"density_file", ""},
     {"dents", "dents"},
     {"facets", ""},
-    {"function", "function"},
     {"gradient", "linear"},
     {"granite", "granite"},
     {"hexagon", "hexagon"},
@@ -122,7 +121,7 @@ bool PatternReader::take(Arguments& a, PovPattern& p) {
     p.move(moves);
     return true;
   }
-  return take_block(a, p) || take_pattern(a, p) || take_modifier(a, p);
+  return take_block(a, p) || take_function(a, p) || take_pattern(a, p) || take_modifier(a, p);
 }
 
 bool PatternReader::take_block(Arguments& a, PovPattern& p) {
@@ -154,6 +153,20 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
   return true;
 }
 
+bool PatternReader::take_function(Arguments& a, PovPattern& p) {
+  const auto* const function =
+      a.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a.peek().value);
+  if (function == nullptr || *function == nullptr) return false;
+  p.word = "function", p.where = a.where(), p.key = "function", p.own = context_.tree.map(p.where);
+  p.is_list = false;
+  a.take();
+  if (const auto text = function_text(context_, **function, p.where))
+    context_.tree.put(p.own, "f", context_.tree.text(p.where, *text));
+  else
+    p.key = "";
+  return true;
+}
+
 bool PatternReader::take_pattern(Arguments& a, PovPattern& p) {
   const std::string_view word = a.peek_word();
   const auto* const name = std::ranges::find(kNames, word, &PatternName::word);
@@ -177,18 +190,6 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
     put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));
   } else if (p.word == "julia" || p.word == "mandel") {
     take_fractal(a, p);
-  } else if (p.word == "function") {
-    const auto* const function =
-        a.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a.peek().value);
-    if (function == nullptr || *function == nullptr) {
-      p.key = "";
-      return;
-    }
-    a.take();
-    if (const auto text = function_text(context_, **function, p.where))
-      tree.put(p.own, "f", tree.text(p.where, *text));
-    else
-      p.key = "";
   }
 }
 

@@ -37,7 +37,8 @@ PovColor color_at(const std::vector<PigmentEntry>& map, double at) {
 }
 
 /// A map whose places ascend and that shows the same. POV-Ray looks for the first place that is not below the
-/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing itself.
+/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing
+/// itself.
 std::vector<PigmentEntry> in_order(const std::vector<PigmentEntry>& map) {
   std::vector<PigmentEntry> all;
   for (std::size_t i = 0; i < map.size(); ++i) {
