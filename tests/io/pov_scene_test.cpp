@@ -266,7 +266,7 @@ TEST(PovScene, PatternsAreTextures) {
       "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
       "interior_factor: 2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
   EXPECT_EQ(color("function { x + 0.5 } color_map { [0 rgb 0] [1 rgb x] }"),
-            "{function: {f: \"x + 0.5\", map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}");
+            "{function: {f: \"(x + 0.5)\", map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}");
   // Out of order, as POV-Ray shows it.
   EXPECT_EQ(color("planar color_map { [0.5 rgb 1] [0 rgb 0] [1 rgb 0.25] }"),
             "{planar: {map: [[0.5, [1, 1, 1]], [0.5, [0.125, 0.125, 0.125]], [1, [0.25, 0.25, 0.25]]]}}");
