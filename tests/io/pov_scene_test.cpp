@@ -237,7 +237,7 @@ TEST(PovScene, PatternsAreTextures) {
       color("gradient y color_map { [0 rgb 0] [0.5 rgb x] [1 rgb 1] } scale 2"),
       "{linear: {direction: [0, 1, 0], map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], transform: "
       "{scale: 2}}}");
-  EXPECT_EQ(color("bozo"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(color("spotted"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
   EXPECT_EQ(
       color("marble turbulence 0.5 octaves 3 color_map { [0, 0.5 rgb 0 rgb x] [0.5, 1 rgb x rgb 1] }"),
       "{layers: {map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], turbulence: "
@@ -258,9 +258,11 @@ TEST(PovScene, PatternsAreTextures) {
       "{planar: {map: [[0, [0, 0, 0]], [1, {granite: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], transform: "
       "{scale: 3}}}]]}}");
   EXPECT_EQ(color("average pigment_map { [1 rgb 1] [3 rgb x] }"),
-            "{over: {color: [0.75, 0, 0], filter: 1, under: {over: {color: [0.25, 0.25, 0.25], filter: 1, "
-            "under: [0, "
-            "0, 0]}}}}");
+            "{over: {color: [0.75, 0, 0], filter: 1, under: [0.25, 0.25, 0.25]}}");
+  EXPECT_EQ(color("radial"),
+            "{angular: {map: [[0, [0, 1, 1]], [0.333, [1, 1, 0]], [0.666, [1, 0, 1]], [1, [0, 1, 1]]]}}");
+  EXPECT_EQ(color("magnet 2 mandel 30 color_map { [0 rgb 0] [1 rgb 1] }"),
+            "{fractal: {iterations: 30, formula: magnet2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
   EXPECT_EQ(
       color("julia <0.25, -0.5>, 20 exponent 3 interior 1, 2"),
       "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
@@ -308,6 +310,20 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
       material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
       "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: {scale: 3}}}, ambient: 0.1, "
       "diffuse: 0.6}}");
+}
+
+TEST(PovScene, MeansOfTexturesAndNormals) {
+  const PovFiles files;
+  const auto material = [&](const std::string& texture) {
+    return files.section("#version 3.7;\nsphere { 0, 1 " + texture + " }", "materials");
+  };
+  EXPECT_EQ(material("texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
+                     "x } finish { diffuse 1 }] } }"),
+            "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
+            "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
+  EXPECT_EQ(material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
+            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
+            "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: 0.05}}}}}");
 }
 
 TEST(PovScene, SkiesArePatternsOfDirections) {

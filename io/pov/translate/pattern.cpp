@@ -168,6 +168,16 @@ bool PatternReader::take_function(Arguments& a, PovPattern& p) {
 }
 
 bool PatternReader::take_pattern(Arguments& a, PovPattern& p) {
+  if (a.peek_word() == "magnet") {
+    const Place where = a.where();
+    a.take();
+    const bool second = a.is_numbers() && a.number("1 or 2") == 2;
+    if (a.peek_word() != "mandel" && a.peek_word() != "julia") return true;
+    take_pattern(a, p);
+    set(p.own, "formula", context_.tree.word(where, second ? "magnet2" : "magnet1"));
+    p.word = "magnet";
+    return true;
+  }
   const std::string_view word = a.peek_word();
   const auto* const name = std::ranges::find(kNames, word, &PatternName::word);
   if (word.empty() || name == std::end(kNames)) return false;
@@ -228,13 +238,6 @@ bool PatternReader::take_later_key(Arguments& a, PovPattern& p) {
     put(p, "offset", std::max(0.0, a.number("a number")));
   } else if (is("crackle", "solid")) {
     set(p.own, "solid", tree.flag(where, a.flag()));
-  } else if (p.key == "fractal" && a.take_word("magnet")) {
-    const bool second = a.number("1 or 2") == 2;
-    set(p.own, "formula", tree.word(where, second ? "magnet2" : "magnet1"));
-    if (a.take_word("mandel"))
-      p.word = "mandel", take_fractal(a, p);
-    else if (a.take_word("julia"))
-      p.word = "julia", take_fractal(a, p);
   } else if (p.key == "fractal" && a.take_word("exponent")) {
     put(p, "power", std::clamp(std::trunc(a.number("a number")), 2.0, 33.0));
   } else if (p.key == "fractal" && (a.peek_word() == "interior" || a.peek_word() == "exterior")) {
