@@ -181,6 +181,7 @@ template <class AnyPattern, class F>
 void for_each_nested_texture(AnyPattern& pattern, F&& f) {
   for (auto& entry : pattern.map) f(entry.texture.index);
   if (auto* const shown = std::get_if<TexturePattern>(&pattern.pattern)) f(shown->texture.index);
+  if (auto* const function = std::get_if<FunctionPattern>(&pattern.pattern)) f(function->texture.index);
   if (auto* const image = std::get_if<ProjectedPattern>(&pattern.pattern)) f(image->texture.index);
   if (auto* const over = std::get_if<OverPattern>(&pattern.pattern))
     f(over->color.texture.index), f(over->filter.texture.index), f(over->under.texture.index);

@@ -60,8 +60,10 @@ double raw_value(const CylindricalPattern&, const Vec3d& p, const PatternFrame&)
   return down(hypotenuse(p.x, p.z));
 }
 
-double raw_value(const FunctionPattern& f, const Vec3d& p, const PatternFrame&) {
-  return value_at(f.function, p.x, p.y, p.z);
+double raw_value(const FunctionPattern& f, const Vec3d& p, const PatternFrame& frame) {
+  if (f.texture == TextureIndex{}) return value_at(f.function, p.x, p.y, p.z);
+  const Color c = frame.others == nullptr ? Color{0, 0, 0} : frame.others->color(f.texture.index, p);
+  return value_at(f.function, double{c.x}, double{c.y}, double{c.z});
 }
 
 double raw_value(const LayersPattern&, const Vec3d& p, const PatternFrame& frame) {

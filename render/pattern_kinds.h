@@ -159,12 +159,16 @@ struct FractalPattern {
   bool operator==(const FractalPattern&) const = default;
 };
 
-/// A function of the place.
+/// A function of the place, or of the colour of another texture there.
 struct FunctionPattern {
   FunctionTape function;
+  TextureIndex texture{};
 
   static constexpr ShapeInfo kShapeInfo{"function", "by the value of a function"};
-  void describe(auto& p) { p.required("f", function, "the function; 0 where it is not defined"); }
+  void describe(auto& p) {
+    p.required("f", function, "the function; 0 where it is not defined");
+    p.optional("of", texture, "a texture whose red, green and blue are x, y and z in place of coordinates");
+  }
   bool operator==(const FunctionPattern& other) const;
 };
 

@@ -317,13 +317,17 @@ TEST(PovScene, MeansOfTexturesAndNormals) {
   const auto material = [&](const std::string& texture) {
     return files.section("#version 3.7;\nsphere { 0, 1 " + texture + " }", "materials");
   };
-  EXPECT_EQ(material("texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
-                     "x } finish { diffuse 1 }] } }"),
-            "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
-            "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
-  EXPECT_EQ(material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
-            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
-            "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: 0.05}}}}}");
+  EXPECT_EQ(
+      material(
+          "texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
+          "x } finish { diffuse 1 }] } }"),
+      "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
+      "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
+  EXPECT_EQ(
+      material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
+      "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
+      "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: "
+      "0.05}}}}}");
 }
 
 TEST(PovScene, SkiesArePatternsOfDirections) {

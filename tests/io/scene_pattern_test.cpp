@@ -61,6 +61,8 @@ TEST_F(ScenePattern, PatternsWithoutValuesAreRead) {
   const PatternTexture image =
       pattern("projected: {of: {file: a.png}, onto: spherical, transform: {scale: 2}}");
   EXPECT_EQ(std::get<ProjectedPattern>(image.pattern).projection, ProjectedPattern::Projection::spherical);
+  const PatternTexture function = pattern("function: {f: x^2, of: {noise: }}");
+  EXPECT_LT(std::get<FunctionPattern>(function.pattern).texture.index, scene.textures.size());
   expect("over: {color: 1, filter: 1}", "under");
   expect("over: {color: 1, filter: 1, under: 0, map: [[0, 1]]}", "map");
   expect("projected: {}", "of");

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/functions/function_tape.h"
 #include "render/pattern.h"
 #include "tests/render/light_checks.h"
 
@@ -299,6 +300,15 @@ TEST(Maps, WhatIsSeenThroughOthersIsFiltered) {
   const Vec3d slope = pattern_slope(texture, p, &places);
   EXPECT_NEAR(slope.x, 4, 1e-3);
   EXPECT_NEAR(slope.y, 0, 1e-3);
+}
+
+TEST(Maps, FunctionsOfColours) {
+  PatternTexture texture;
+  texture.pattern = FunctionPattern{compile_function("x^2 + y / 4 + z / 100"), {0}};
+  texture.colors = {{0, 0, 0}, {1, 1, 1}};
+  const Places places;
+  EXPECT_NEAR(double{pattern_color(texture, {0.5, 0.25, 3}, &places).x}, 0.25 + 0.0625 + 0.03, 1e-6);
+  EXPECT_EQ(pattern_color(texture, {0.5, 0.25, 3}).x, 0);
 }
 
 TEST(Maps, ImagesLieWhereTheirProjectionSays) {

@@ -175,7 +175,8 @@ Node normal_node(Context& context, const Normal& n) {
   if (p.is_none() || (n.amount == 0 && n.normals.empty())) return nullptr;
   if (p.word == "average") {
     std::vector<WeightedNode> all;
-    for (const NormalEntry& entry : n.normals) all.push_back({entry.at, nested_node(context, p.where, *entry.normal)});
+    for (const NormalEntry& entry : n.normals)
+      all.push_back({entry.at, nested_node(context, p.where, *entry.normal)});
     const Node mean = mean_node(context.tree, p.where, all);
     return mean != nullptr && mean->kind == YamlKind::map ? mean : nullptr;
   }

@@ -66,15 +66,17 @@ std::vector<PigmentEntry> default_map(std::string_view pattern) {
   const Vec3d black{0, 0, 0}, white{1, 1, 1}, red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, cyan{0, 1, 1},
       magenta{1, 0, 1}, yellow{1, 1, 0}, light{0.666, 0.312, 0.2}, dark{0.4, 0.1333, 0.066};
   if (pattern == "agate")
-    stops = {{0, white},          {0.5, {0.95, 0.75, 0.5}}, {0.5, {0.9, 0.7, 0.5}},
-             {0.6, {0.9, 0.7, 0.4}}, {0.6, {1, 0.7, 0.4}},     {1, {0.6, 0.3, 0}}};
+    stops = {{0, white},           {0.5, {0.95, 0.75, 0.5}}, {0.5, {0.9, 0.7, 0.5}}, {0.6, {0.9, 0.7, 0.4}},
+             {0.6, {1, 0.7, 0.4}}, {1, {0.6, 0.3, 0}}};
   if (pattern == "bozo")
-    stops = {{0, white}, {0.4, white}, {0.4, green}, {0.6, green}, {0.6, blue}, {0.8, blue}, {0.8, red}, {1, red}};
+    stops = {{0, white},  {0.4, white}, {0.4, green}, {0.6, green},
+             {0.6, blue}, {0.8, blue},  {0.8, red},   {1, red}};
   if (pattern == "marble") stops = {{0, {0.9, 0.8, 0.8}}, {0.9, {0.9, 0.08, 0.08}}, {0.9, black}, {1, black}};
   if (pattern == "wood") stops = {{0, light}, {0.6, light}, {0.6, dark}, {1, dark}};
   if (pattern == "radial") stops = {{0, cyan}, {0.333, yellow}, {0.666, magenta}, {1, cyan}};
   if (pattern == "mandel")
-    stops = {{0, black}, {0.001, black}, {0.001, cyan}, {0.012, yellow}, {0.015, magenta}, {0.1, cyan}, {1, cyan}};
+    stops = {{0, black},       {0.001, black}, {0.001, cyan}, {0.012, yellow},
+             {0.015, magenta}, {0.1, cyan},    {1, cyan}};
   std::vector<PigmentEntry> map;
   for (const Stop& stop : stops) map.push_back({stop.at, {stop.color}, nullptr});
   return map;
@@ -296,7 +298,8 @@ std::vector<PigmentEntry> even_map(const std::vector<PigmentEntry>& map) {
 /// The mean of the entries.
 Node average_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {
   std::vector<WeightedNode> all;
-  for (const PigmentEntry& entry : p.entries) all.push_back({entry.at, entry_node(context, where, entry, part)});
+  for (const PigmentEntry& entry : p.entries)
+    all.push_back({entry.at, entry_node(context, where, entry, part)});
   return mean_node(context.tree, where, all);
 }
 
@@ -348,7 +351,8 @@ Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& 
     const Node part = scaled(tree, where, *node.value, node.weight / sum);
     if (all != nullptr) {
       const Node keys = tree.map(where);
-      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)), tree.put(keys, "under", all);
+      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)),
+          tree.put(keys, "under", all);
       all = tree.map(where, "over", keys);
     } else {
       all = part;
