@@ -34,7 +34,7 @@ bool depends_on_y(const FunctionTape& f) {
   constexpr std::uint8_t kY = 1;
   if (f.result == kY) return true;
   for (const TapeStep& step : f.steps)
-    if (step.op != TapeOp::constant && (step.a == kY || step.b == kY)) return true;
+    if (reads(step, kY)) return true;
   return false;
 }
 
