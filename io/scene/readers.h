@@ -175,8 +175,9 @@ std::string spheres_schema(Schema& schema);
 std::string elements_schema(Schema& schema);
 std::string blends_schema(Schema& schema);
 
-/// Calls read(path) for the file that `node` names, such as an image or a font. An Error that it throws, whose
-/// text may begin with the path, is thrown again at the place of the name, since such a file has no lines.
+/// Calls read(path) for the file that `node` names, such as an image or a font. An Error that it throws,
+/// whose text may begin with the path, is thrown again at the place of the name, since such a file has no
+/// lines.
 template <class Read>
 auto read_named_file(SceneLoad& load, const YamlNode& node, Read&& read) {
   const std::string path = load.values.existing_file(node);

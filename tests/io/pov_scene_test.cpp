@@ -239,7 +239,7 @@ TEST(PovScene, PatternsAreTextures) {
       color("gradient y color_map { [0 rgb 0] [0.5 rgb x] [1 rgb 1] } scale 2"),
       "{linear: {direction: [0, 1, 0], map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], transform: "
       "{scale: 2}}}");
-  EXPECT_EQ(color("bozo"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(color("spotted"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
   EXPECT_EQ(
       color("marble turbulence 0.5 octaves 3 color_map { [0, 0.5 rgb 0 rgb x] [0.5, 1 rgb x rgb 1] }"),
       "{layers: {map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], turbulence: "
@@ -260,13 +260,17 @@ TEST(PovScene, PatternsAreTextures) {
       "{planar: {map: [[0, [0, 0, 0]], [1, {granite: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], transform: "
       "{scale: 3}}}]]}}");
   EXPECT_EQ(color("average pigment_map { [1 rgb 1] [3 rgb x] }"),
-            "{over: {color: [0.75, 0, 0], filter: 1, under: {over: {color: [0.25, 0.25, 0.25], filter: 1, "
-            "under: [0, "
-            "0, 0]}}}}");
+            "{over: {color: [0.75, 0, 0], filter: 1, under: [0.25, 0.25, 0.25]}}");
+  EXPECT_EQ(color("radial"),
+            "{angular: {map: [[0, [0, 1, 1]], [0.333, [1, 1, 0]], [0.666, [1, 0, 1]], [1, [0, 1, 1]]]}}");
+  EXPECT_EQ(color("magnet 2 mandel 30 color_map { [0 rgb 0] [1 rgb 1] }"),
+            "{fractal: {iterations: 30, formula: magnet2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
   EXPECT_EQ(
       color("julia <0.25, -0.5>, 20 exponent 3 interior 1, 2"),
       "{fractal: {set: julia, real: 0.25, imaginary: -0.5, iterations: 20, power: 3, interior: least_size, "
       "interior_factor: 2, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(color("function { x + 0.5 } color_map { [0 rgb 0] [1 rgb x] }"),
+            "{function: {f: \"(x + 0.5)\", map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}");
   // Out of order, as POV-Ray shows it.
   EXPECT_EQ(color("planar color_map { [0.5 rgb 1] [0 rgb 0] [1 rgb 0.25] }"),
             "{planar: {map: [[0.5, [1, 1, 1]], [0.5, [0.125, 0.125, 0.125]], [1, [0.25, 0.25, 0.25]]]}}");
@@ -308,6 +312,20 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
       material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
       "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: {scale: 3}}}, ambient: 0.1, "
       "diffuse: 0.6}}");
+}
+
+TEST(PovScene, MeansOfTexturesAndNormals) {
+  const PovFiles files;
+  const auto material = [&](const std::string& texture) {
+    return files.section("#version 3.7;\nsphere { 0, 1 " + texture + " }", "materials");
+  };
+  EXPECT_EQ(material("texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
+                     "x } finish { diffuse 1 }] } }"),
+            "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
+            "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
+  EXPECT_EQ(material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
+            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
+            "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: 0.05}}}}}");
 }
 
 TEST(PovScene, SkiesArePatternsOfDirections) {
@@ -414,10 +432,8 @@ TEST(PovScene, LightsAndSurroundings) {
       "light_source { 5*y, rgb 1 parallel point_at x }\n";
   EXPECT_EQ(files.section(scene, "lights"),
             "[{point: {position: [1, 2, 3], color: [1, 1, 1]}}, {spot: {position: [0, 5, 0], at: [0, 0, 0], "
-            "outer_angle: 20, "
-            "inner_angle: 10, color: [0.5, 0.5, 0.5], falloff: false}}, {directional: {direction: [1, -5, "
-            "0], from: [0, 5, 0], color: [1, 1, "
-            "1]}}]");
+            "outer_angle: 20, inner_angle: 10, falloff: false, color: [0.5, 0.5, 0.5]}}, {directional: "
+            "{direction: [1, -5, 0], from: [0, 5, 0], color: [1, 1, 1]}}]");
   EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
   EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");
   EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 7}");
@@ -491,7 +507,7 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
   const std::string torn = "isosurface { function { F(x, y, z) } contained_by { box { -1, 1 } } } ";
   EXPECT_EQ(files.warnings("#version 3.7;\n#declare F = function { internal(6) } " + torn + torn),
             "scene.pov:2:39: warning: this function contains a function of functions.inc that has no formula "
-            "here (F), which expressions here do not have; the object is left out\n");
+            "here (F), which expressions here do not have; it is left out\n");
 }
 
 TEST(PovScene, NoiseInFunctions) {

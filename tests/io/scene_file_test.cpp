@@ -94,7 +94,7 @@ TEST(SceneFile, ReadsCurvedProjections) {
     EXPECT_EQ(read(std::string("projection: ") + name).projection, projection);
   test::expect_errors({
       {"camera: {projection: fisheye, angle: 361}",
-       "scene.yaml:2:38: expected a number greater than 0 and at most 360, found '361'"},
+       "scene.yaml:2:38: expected a number greater than 0 and of at most 360, found '361'"},
       {"camera: {projection: fisheye, angle: [90, 90]}",
        "scene.yaml:2:38: a fisheye view has one angle; two are for a spherical view"},
       {"camera: {projection: omnimax, aperture: 1}",

@@ -308,7 +308,10 @@ TEST(CurvedView, WhatIsLeftOutIsBlackAndNotCovered) {
         const Picture shown = run(scene).picture;
         EXPECT_EQ(color(shown, 2, 16), (Color{0, 0, 0}));
         EXPECT_EQ(value(shown, "A", 2, 16), 0);
-        EXPECT_GT(color(shown, 32, 1).x, 0);
+        // No light comes through fog without end.
+        if (!fog || kind != IntegratorKind::path) {
+          EXPECT_GT(color(shown, 32, 1).x, 0);
+        }
         EXPECT_GT(value(shown, "A", 32, 1), 0.9f);
         EXPECT_GT(value(shown, "A", 32, 16), 0.9f);
       }

@@ -261,10 +261,9 @@ std::optional<std::string> function_text(Context& context, const Function& funct
   } catch (const Unwritable& reason) {
     context.tell("function with " + reason.why, where,
                  "this function contains " + reason.why +
-                     ", which expressions here do not have; the object is left out");
+                     ", which expressions here do not have; it is left out");
   } catch (const std::exception& error) {
-    context.warn(
-        where, fmt::format("this function is no expression here: {}; the object is left out", error.what()));
+    context.warn(where, fmt::format("this function is no expression here: {}; it is left out", error.what()));
   }
   return std::nullopt;
 }

@@ -135,6 +135,11 @@ class MaterialWriter {
                flow_text(*values.back()) != flow_text(*values[0]);
     }
     if (!differ) return values[0];
+    if (pattern.word == "average") {
+      std::vector<WeightedNode> all;
+      for (std::size_t i = 0; i < values.size(); ++i) all.push_back({look.entries[i].at, values[i]});
+      if (const Node mean = mean_node(tree_, where_, all)) return mean;
+    }
     if (pattern.key.empty() || pattern.key == "projected") {
       context_.tell(fmt::format("texture pattern {}", pattern.word), pattern.where,
                     fmt::format("of the textures in a pattern '{}' the first is shown", pattern.word));

@@ -49,9 +49,6 @@ class NormalReader {
         a.take();
       } else if (a.take_word("bump_size")) {
         n.amount = a.number("a number");
-      } else if (a.peek_word() == "average") {
-        context_.tell("normal average", a.where(), "the mean of several normals is left out");
-        a.take();
       } else {
         a.take();
       }
@@ -70,7 +67,7 @@ class NormalReader {
       n.slopes.clear(), n.normals.clear();
       read_map(block, n);
       std::ranges::stable_sort(n.slopes, {}, &NormalEntry::at);
-      std::ranges::stable_sort(n.normals, {}, &NormalEntry::at);
+      if (n.pattern.word != "average") std::ranges::stable_sort(n.normals, {}, &NormalEntry::at);
     } else if (k == "bump_map") {
       patterns_.take_image(block, n.pattern);
       Arguments a(context_, block);
@@ -176,6 +173,12 @@ void read_normal(Context& context, const Block& block, Normal& normal) {
 Node normal_node(Context& context, const Normal& n) {
   const PovPattern& p = n.pattern;
   if (p.is_none() || (n.amount == 0 && n.normals.empty())) return nullptr;
+  if (p.word == "average") {
+    std::vector<WeightedNode> all;
+    for (const NormalEntry& entry : n.normals) all.push_back({entry.at, nested_node(context, p.where, *entry.normal)});
+    const Node mean = mean_node(context.tree, p.where, all);
+    return mean != nullptr && mean->kind == YamlKind::map ? mean : nullptr;
+  }
   if (p.key.empty()) {
     context.tell(fmt::format("normal {}", p.word), p.where,
                  fmt::format("'{}' in 'normal' has no meaning here: surfaces are smooth", p.word));

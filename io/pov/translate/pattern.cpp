@@ -30,7 +30,6 @@ constexpr PatternName kNames[] = {
     {"density_file", ""},
     {"dents", "dents"},
     {"facets", ""},
-    {"function", "function"},
     {"gradient", "linear"},
     {"granite", "granite"},
     {"hexagon", "hexagon"},
@@ -122,7 +121,7 @@ bool PatternReader::take(Arguments& a, PovPattern& p) {
     p.move(moves);
     return true;
   }
-  return take_block(a, p) || take_pattern(a, p) || take_modifier(a, p);
+  return take_block(a, p) || take_function(a, p) || take_pattern(a, p) || take_modifier(a, p);
 }
 
 bool PatternReader::take_block(Arguments& a, PovPattern& p) {
@@ -154,7 +153,31 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
   return true;
 }
 
+bool PatternReader::take_function(Arguments& a, PovPattern& p) {
+  const auto* const function =
+      a.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a.peek().value);
+  if (function == nullptr || *function == nullptr) return false;
+  p.word = "function", p.where = a.where(), p.key = "function", p.own = context_.tree.map(p.where);
+  p.is_list = false;
+  a.take();
+  if (const auto text = function_text(context_, **function, p.where))
+    context_.tree.put(p.own, "f", context_.tree.text(p.where, *text));
+  else
+    p.key = "";
+  return true;
+}
+
 bool PatternReader::take_pattern(Arguments& a, PovPattern& p) {
+  if (a.peek_word() == "magnet") {
+    const Place where = a.where();
+    a.take();
+    const bool second = a.is_numbers() && a.number("1 or 2") == 2;
+    if (a.peek_word() != "mandel" && a.peek_word() != "julia") return true;
+    take_pattern(a, p);
+    set(p.own, "formula", context_.tree.word(where, second ? "magnet2" : "magnet1"));
+    p.word = "magnet";
+    return true;
+  }
   const std::string_view word = a.peek_word();
   const auto* const name = std::ranges::find(kNames, word, &PatternName::word);
   if (word.empty() || name == std::end(kNames)) return false;
@@ -177,18 +200,6 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
     put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));
   } else if (p.word == "julia" || p.word == "mandel") {
     take_fractal(a, p);
-  } else if (p.word == "function") {
-    const auto* const function =
-        a.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a.peek().value);
-    if (function == nullptr || *function == nullptr) {
-      p.key = "";
-      return;
-    }
-    a.take();
-    if (const auto text = function_text(context_, **function, p.where))
-      tree.put(p.own, "f", tree.text(p.where, *text));
-    else
-      p.key = "";
   }
 }
 
@@ -227,13 +238,6 @@ bool PatternReader::take_later_key(Arguments& a, PovPattern& p) {
     put(p, "offset", std::max(0.0, a.number("a number")));
   } else if (is("crackle", "solid")) {
     set(p.own, "solid", tree.flag(where, a.flag()));
-  } else if (p.key == "fractal" && a.take_word("magnet")) {
-    const bool second = a.number("1 or 2") == 2;
-    set(p.own, "formula", tree.word(where, second ? "magnet2" : "magnet1"));
-    if (a.take_word("mandel"))
-      p.word = "mandel", take_fractal(a, p);
-    else if (a.take_word("julia"))
-      p.word = "julia", take_fractal(a, p);
   } else if (p.key == "fractal" && a.take_word("exponent")) {
     put(p, "power", std::clamp(std::trunc(a.number("a number")), 2.0, 33.0));
   } else if (p.key == "fractal" && (a.peek_word() == "interior" || a.peek_word() == "exterior")) {

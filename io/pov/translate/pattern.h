@@ -50,6 +50,7 @@ class PatternReader {
 
  private:
   bool take_pattern(Arguments& a, PovPattern& p);
+  bool take_function(Arguments& a, PovPattern& p);
   bool take_block(Arguments& a, PovPattern& p);
   void take_own_keys(Arguments& a, PovPattern& p);
   void take_fractal(Arguments& a, PovPattern& p);

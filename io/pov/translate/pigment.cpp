@@ -37,7 +37,8 @@ PovColor color_at(const std::vector<PigmentEntry>& map, double at) {
 }
 
 /// A map whose places ascend and that shows the same. POV-Ray looks for the first place that is not below the
-/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing itself.
+/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing
+/// itself.
 std::vector<PigmentEntry> in_order(const std::vector<PigmentEntry>& map) {
   std::vector<PigmentEntry> all;
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -53,6 +54,30 @@ std::vector<PigmentEntry> in_order(const std::vector<PigmentEntry>& map) {
     all.push_back(map[i]);
   }
   return all;
+}
+
+/// The colours of a pattern without a map: greys, but for some. As seen in 3.7.0.10.
+std::vector<PigmentEntry> default_map(std::string_view pattern) {
+  struct Stop {
+    double at;
+    Vec3d color;
+  };
+  std::vector<Stop> stops{{0, {0, 0, 0}}, {1, {1, 1, 1}}};
+  const Vec3d black{0, 0, 0}, white{1, 1, 1}, red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, cyan{0, 1, 1},
+      magenta{1, 0, 1}, yellow{1, 1, 0}, light{0.666, 0.312, 0.2}, dark{0.4, 0.1333, 0.066};
+  if (pattern == "agate")
+    stops = {{0, white},          {0.5, {0.95, 0.75, 0.5}}, {0.5, {0.9, 0.7, 0.5}},
+             {0.6, {0.9, 0.7, 0.4}}, {0.6, {1, 0.7, 0.4}},     {1, {0.6, 0.3, 0}}};
+  if (pattern == "bozo")
+    stops = {{0, white}, {0.4, white}, {0.4, green}, {0.6, green}, {0.6, blue}, {0.8, blue}, {0.8, red}, {1, red}};
+  if (pattern == "marble") stops = {{0, {0.9, 0.8, 0.8}}, {0.9, {0.9, 0.08, 0.08}}, {0.9, black}, {1, black}};
+  if (pattern == "wood") stops = {{0, light}, {0.6, light}, {0.6, dark}, {1, dark}};
+  if (pattern == "radial") stops = {{0, cyan}, {0.333, yellow}, {0.666, magenta}, {1, cyan}};
+  if (pattern == "mandel")
+    stops = {{0, black}, {0.001, black}, {0.001, cyan}, {0.012, yellow}, {0.015, magenta}, {0.1, cyan}, {1, cyan}};
+  std::vector<PigmentEntry> map;
+  for (const Stop& stop : stops) map.push_back({stop.at, {stop.color}, nullptr});
+  return map;
 }
 
 /// Reads pigments.
@@ -268,28 +293,33 @@ std::vector<PigmentEntry> even_map(const std::vector<PigmentEntry>& map) {
   return all;
 }
 
-/// The mean of the entries, as a chain of what lies over each other.
+/// The mean of the entries.
 Node average_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {
-  Tree& tree = context.tree;
-  double sum = 0;
-  for (const PigmentEntry& entry : p.entries) sum += entry.at;
-  if (!(sum > 0)) return nullptr;
-  Node below = color_node(tree, where, {0, 0, 0});
-  for (const PigmentEntry& entry : p.entries) {
-    const double weight = entry.at / sum;
-    const Node keys = tree.map(where);
-    if (entry.pigment == nullptr) {
-      tree.put(keys, "color", part_node(tree, where, part, part(entry.color) * weight));
-    } else {
-      const Node node = pigment_node(context, where, *entry.pigment, part);
-      // A colour has been given above.
-      if (node->kind == YamlKind::map) tree.put(node, "gain", tree.number(where, weight));
-      tree.put(keys, "color", node);
-    }
-    tree.put(keys, "filter", tree.number(where, 1)), tree.put(keys, "under", below);
-    below = tree.map(where, "over", keys);
+  std::vector<WeightedNode> all;
+  for (const PigmentEntry& entry : p.entries) all.push_back({entry.at, entry_node(context, where, entry, part)});
+  return mean_node(context.tree, where, all);
+}
+
+/// A value of a material times a number.
+Node scaled(Tree& tree, const Place& where, const YamlNode& value, double factor) {
+  const auto number = [&](const YamlNode& node) {
+    return tree.word(where, fmt::format("{}", static_cast<float>(std::stod(node.text) * factor) + 0.0f));
+  };
+  if (value.kind == YamlKind::scalar) return number(value);
+  const bool is_color = value.kind == YamlKind::sequence;
+  const Node all = is_color ? tree.list(where) : tree.map(where);
+  if (is_color) {
+    for (const YamlNode* part : value.items) Tree::push(all, number(*part));
+    return all;
   }
-  return below;
+  for (std::size_t i = 0; i + 1 < value.items.size(); i += 2) {
+    if (value.items[i]->text == "gain")
+      factor *= std::stod(value.items[i + 1]->text);
+    else
+      all->items.push_back(value.items[i]), all->items.push_back(value.items[i + 1]);
+  }
+  tree.put(all, "gain", tree.number(where, factor));
+  return all;
 }
 
 Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
@@ -308,6 +338,24 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
 }
 
 }  // namespace
+
+Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& nodes) {
+  double sum = 0;
+  for (const WeightedNode& node : nodes) sum += node.weight;
+  if (!(sum > 0)) return nullptr;
+  Node all = nullptr;
+  for (const WeightedNode& node : nodes) {
+    const Node part = scaled(tree, where, *node.value, node.weight / sum);
+    if (all != nullptr) {
+      const Node keys = tree.map(where);
+      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)), tree.put(keys, "under", all);
+      all = tree.map(where, "over", keys);
+    } else {
+      all = part;
+    }
+  }
+  return all;
+}
 
 void read_pigment(Context& context, const Block& block, Pigment& pigment) {
   PigmentReader(context).read(block, pigment);
@@ -371,9 +419,7 @@ Node pigment_node(Context& context, const Place& where, const Pigment& p, const 
     for (const Node node : shown) Tree::push(values, node);
     return pattern_node(context, pattern, values);
   }
-  // Without a map the values are greys.
-  const std::vector<PigmentEntry> usual{{0, {{0, 0, 0}}, nullptr}, {1, {{1, 1, 1}}, nullptr}};
-  const std::vector<PigmentEntry> map = even_map(p.entries.empty() ? usual : p.entries);
+  const std::vector<PigmentEntry> map = even_map(p.entries.empty() ? default_map(pattern.word) : p.entries);
   std::vector<Node> shown;
   for (const PigmentEntry& entry : map) shown.push_back(entry_node(context, where, entry, part));
   if (const Node only = only_value(shown)) return only;

@@ -53,6 +53,14 @@ struct ColorPart {
 /// The colours of a pigment as a value of scene files: a colour, or a texture.
 Node pigment_node(Context& context, const Place& where, const Pigment& pigment, const ColorPart& part);
 
+/// A value of a material, and how much it counts.
+struct WeightedNode {
+  double weight;
+  Node value;
+};
+/// The weighted mean of colours, numbers and textures, as textures over each other. Null if nothing counts.
+Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& nodes);
+
 /// A colour as a value of scene files.
 Node color_node(Tree& tree, const Place& where, const Vec3d& rgb);
 

@@ -55,7 +55,7 @@ class TextureReader {
     if (pattern.uses_uv && pattern.is_none())
       look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = true;
     if (pattern.is_none() || entries.empty()) return;
-    if (!pattern.is_list) std::ranges::stable_sort(entries, {}, &TextureEntry::at);
+    if (!pattern.is_list && pattern.word != "average") std::ranges::stable_sort(entries, {}, &TextureEntry::at);
     look.pattern = std::move(pattern), look.entries = std::move(entries), look.layers.clear();
   }
 
