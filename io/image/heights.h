@@ -21,4 +21,13 @@ struct HeightImage {
 /// along a side or `most_pixels` in all.
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels);
 
+/// Whether the file is a PNG image whose pixels are numbers of colours in a palette. False for all that
+/// cannot be read.
+bool has_palette(const std::string& path);
+
+/// Reads a PNG image with a palette: the heights, in `floats`, are the numbers of the colours from 0, divided
+/// by 256, whatever the colours are. Needs no library of images. Throws Error of kind io, without a line, for
+/// other images, for damaged files and colours that the palette lacks, and for sizes as read_heights does.
+HeightImage read_palette_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels);
+
 }  // namespace oktett

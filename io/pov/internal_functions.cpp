@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/precise_math.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett::pov {
@@ -149,6 +150,15 @@ std::string filled(std::string_view text, const std::vector<std::string>& operan
   return out + ')';
 }
 
+/// The value of an operand that is a number, perhaps in parentheses.
+std::optional<double> constant(std::string_view text) {
+  while (text.size() > 1 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 /// f_helix1: tubes that wind about the y axis, each a turn of 2 pi / $4 up, from $3 places around it.
 /// Across it lies a superellipse: a circle for $8 of 1.
 std::string helix(const std::vector<std::string>& operands) {
@@ -167,18 +177,42 @@ std::string helix(const std::vector<std::string>& operands) {
 constexpr std::uint32_t kHelix = 25;
 constexpr std::size_t kHelixOperands = 10;
 
+/// f_noise3d, and f_noise_generator, whose fourth operand chooses between kinds of noise.
+std::string unit_noise(const std::vector<std::string>& operands) {
+  return filled("0.5 + 0.5 * noise($0, $1, $2)", operands);
+}
+
+/// f_ridged_mf: a ridged multifractal (F. K. Musgrave in D. Ebert et al.: Texturing and modeling), of the
+/// exponent $3, the lacunarity $4, $5 octaves, the offset $6 and the gain $7. Nothing if the three numbers
+/// that shape the octaves are none here.
+std::optional<std::string> ridged(const std::vector<std::string>& o) {
+  const std::optional<double> exponent = constant(o[3]), lacunarity = constant(o[4]),
+                              octaves = constant(o[5]);
+  if (!exponent || !lacunarity || !octaves || !(*lacunarity > 0) || !(std::abs(*octaves) < 30))
+    return std::nullopt;
+  std::string sum, signal;
+  double scale = 1;
+  for (int k = 0; k < std::max(1, static_cast<int>(*octaves)); ++k, scale *= *lacunarity) {
+    const std::string number = fmt::format("{}", scale);
+    const std::string own =
+        filled("($3 - abs(noise($0 * $4, $1 * $4, $2 * $4)))^2", {o[0], o[1], o[2], o[6], number});
+    // Where the octave before is low, so is this one.
+    signal = k == 0 ? own : filled("$0 * max(0, min(1, $1 * $2))", {own, signal, o[7]});
+    const double weight = precise::pow(scale, -*exponent);
+    if (!std::isfinite(weight) || !std::isfinite(scale)) return std::nullopt;
+    sum += fmt::format("{}{} * {}", k == 0 ? "" : " + ", signal, weight);
+    // Texts that are too long are refused in any case.
+    if (sum.size() > kMaxExpressionLength) return sum;
+  }
+  return '(' + sum + ')';
+}
+
+constexpr std::uint32_t kRidged = 59;
+constexpr std::size_t kRidgedOperands = 9;
+
 const Internal* find(std::uint32_t number) {
   const auto* const found = std::ranges::find(kInternal, number, &Internal::number);
   return found != std::end(kInternal) ? found : nullptr;
-}
-
-/// The value of an operand that is a number, perhaps in parentheses.
-std::optional<double> constant(std::string_view text) {
-  while (text.size() > 1 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 }  // namespace
@@ -187,6 +221,14 @@ std::optional<std::string> internal_text(std::uint32_t number, const std::vector
   if (number == kHelix) {
     if (operands.size() < kHelixOperands) return std::nullopt;
     return helix(operands);
+  }
+  if (number == kNoiseFunction || number == kNoiseGeneratorFunction) {
+    if (operands.size() < 3) return std::nullopt;
+    return unit_noise(operands);
+  }
+  if (number == kRidged) {
+    if (operands.size() < kRidgedOperands) return std::nullopt;
+    return ridged(operands);
   }
   const Internal* const known = find(number);
   if (known == nullptr || operands.size() < known->operands) return std::nullopt;

@@ -10,12 +10,13 @@
 
 namespace oktett::pov {
 
-/// The numbers of f_noise3d and of f_noise_generator, which have no formula.
+/// The numbers of f_noise3d and of f_noise_generator.
 inline constexpr std::uint32_t kNoiseFunction = 76, kNoiseGeneratorFunction = 78;
 
 /// The function as an expression (kernels/functions/expression.h) of its operands, which are expressions,
 /// too. Nothing if it has no formula here, or if the operands are too few. Functions with a field strength
-/// have no bounds, which do not move surfaces.
+/// have no bounds, which do not move surfaces. Noise is that of expressions, of the same kind as POV-Ray's,
+/// not of the same values.
 std::optional<std::string> internal_text(std::uint32_t number, const std::vector<std::string>& operands);
 
 /// The value of the function, which those with a field strength keep between -10 and 10. Nothing as above.

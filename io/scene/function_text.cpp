@@ -26,8 +26,10 @@ std::string function_text(const FunctionTape& tape) {
   for (const TapeStep& s : tape.steps) {
     // Copies, since a result may overwrite what it is made of.
     const std::string a = r[s.a], b = r[s.b];
-    r[s.out] = fmt::format(fmt::runtime(kPatterns[static_cast<int>(s.op)]), fmt::arg("a", a),
-                           fmt::arg("b", b), fmt::arg("c", number_text(s.c)), fmt::arg("n", s.n));
+    const std::string third = s.op == TapeOp::noise ? r[static_cast<std::size_t>(s.n)] : "";
+    r[s.out] =
+        fmt::format(fmt::runtime(kPatterns[static_cast<int>(s.op)]), fmt::arg("a", a), fmt::arg("b", b),
+                    fmt::arg("c", number_text(s.c)), fmt::arg("n", s.n), fmt::arg("third", third));
     if (s.op == TapeOp::sin_cos) r[s.b] = "cos(" + a + ")";
     if (r[s.out].size() > kMaxExpressionLength)
       throw Error(fmt::format("the function has more than {} characters when it is written out",

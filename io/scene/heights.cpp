@@ -19,10 +19,11 @@ namespace {
 
 using MaybeForm = std::optional<ExactForm>;
 
-std::shared_ptr<const HeightGrid> read_file(SceneLoad& load, const YamlNode& node,
+std::shared_ptr<const HeightGrid> read_file(SceneLoad& load, const YamlNode& node, bool palette,
                                             HeightInterpolation interpolation) {
   return read_named_file(load, node, [&](const std::string& path) {
-    HeightImage image = read_heights(path, kMaxHeightSide, kMaxHeightSamples);
+    HeightImage image =
+        (palette ? read_palette_heights : read_heights)(path, kMaxHeightSide, kMaxHeightSamples);
     return image.words.empty()
                ? HeightGrid::from_floats(image.columns, image.rows, std::move(image.floats), interpolation)
                : HeightGrid::from_words(image.columns, image.rows, std::move(image.words), interpolation);
@@ -33,7 +34,7 @@ bool depends_on_y(const FunctionTape& f) {
   constexpr std::uint8_t kY = 1;
   if (f.result == kY) return true;
   for (const TapeStep& step : f.steps)
-    if (step.op != TapeOp::constant && (step.a == kY || step.b == kY)) return true;
+    if (reads(step, kY)) return true;
   return false;
 }
 
@@ -92,9 +93,13 @@ MaybeForm finish(const ShapeNode& at, HeightFieldShape& shape) {
   const Fields& fields = at.fields;
   const YamlNode *file = fields["file"], *function = fields["function"];
   if (!file && !function) throw Error(at.key.where(), "height_field needs 'file' or 'function'");
+  if (function && shape.palette)
+    throw Error(fields.require("palette").where(), "a height field from a function has no 'palette'");
   if (file && function) throw Error(function->where(), "height_field has either 'file' or 'function'");
-  shape.grid = file ? read_file(at.load, *file, shape.interpolation)
+  shape.grid = file ? read_file(at.load, *file, shape.palette, shape.interpolation)
                     : sample_function(at.load, *function, fields["samples"], shape.size, shape.interpolation);
+  // The grid holds the heights themselves from here on.
+  shape.palette = false;
   const double unit = shape.size.y * shape.grid->unit();
   const double least = shape.grid->least() * unit, greatest = shape.grid->greatest() * unit;
   if (!(std::max(std::abs(least), std::abs(greatest)) <= kMaxCoordinate))

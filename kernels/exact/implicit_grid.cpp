@@ -155,8 +155,8 @@ constexpr double kTrialSize = 0x1p-4, kLeastSize = 0x1p-6, kLeastPlainSize = 0x1
 /// Times relative to that of a node of the tree: a cell, and each of its steps.
 constexpr double kCellCost = 20, kStepCost = 6;
 
-/// The values that matter in a box, as numbers: first that of the result, then two for each value in the
-/// order of computation, its number in the whole list and the numbers of its operands.
+/// The values that matter in a box, as numbers: first that of the result, then three for each value in the
+/// order of computation, its number in the whole list, the numbers of its operands, and that of a third one.
 using Part = std::vector<std::uint32_t>;
 using PartView = std::span<const std::uint32_t>;
 
@@ -178,7 +178,7 @@ class FunctionRule : public CellRule {
     const auto place = [](std::uint32_t v) { return v == kNoId || v < 3 ? v : v - 3 + kFirst; };
     for (std::size_t v = 3; v < values.list.size(); ++v) {
       TapeValue value = values.list[v];
-      value.a = place(value.a), value.b = place(value.b);
+      value.a = place(value.a), value.b = place(value.b), value.third = place(value.third);
       list_.push_back(value);
     }
     root_ = place(values.root);
@@ -187,7 +187,7 @@ class FunctionRule : public CellRule {
   Part whole() const {
     Part part{root_};
     for (std::uint32_t v = kFirst; v < list_.size(); ++v)
-      part.push_back(v), part.push_back(pack(list_[v].a, list_[v].b));
+      part.push_back(v), part.push_back(pack(list_[v].a, list_[v].b)), part.push_back(list_[v].third);
     return part;
   }
 
@@ -200,16 +200,18 @@ class FunctionRule : public CellRule {
       value[k] = Bounds(Lane(box.lo[k] * box_.size), Lane(box.hi[k] * box_.size));
       same[k] = k;
     }
-    for (std::size_t k = 1; k < part.size(); k += 2) {
+    for (std::size_t k = 1; k < part.size(); k += 3) {
+      const std::uint32_t third = part[k + 2];
       const std::uint32_t v = part[k], a = unpack(part[k + 1]), b = unpack(part[k + 1] >> 16);
       const TapeValue& step = list_[v];
-      Bounds r[3];
+      Bounds r[4];
       if (a != kNoId) r[0] = value[same[a]];
       if (b != kNoId) r[1] = value[same[b]];
+      if (third != kNoId) r[3] = value[same[third]];
       same[v] = equal_value(step, a == kNoId ? a : same[a], b == kNoId ? b : same[b], r);
       if (same[v] != kNoId) continue;
       same[v] = v;
-      tape::run_step({step.op, 2, 0, 1, step.n, step.c}, r);
+      tape::run_step({step.op, 2, 0, 1, third == kNoId ? step.n : 3, step.c}, r);
       value[v] = r[2];
     }
     const std::uint32_t root = same[part[0]];
@@ -224,20 +226,22 @@ class FunctionRule : public CellRule {
 
   double least_size(PartView part) const override {
     if (part[0] == unit(-1)) return kInfinity;
-    for (std::size_t k = 1; k < part.size(); k += 2)
+    for (std::size_t k = 1; k < part.size(); k += 3)
       if (is_branch(list_[part[k]].op)) return least_size_;
     return kLeastPlainSize;
   }
 
   double cost(PartView part) const override {
-    return kCellCost + kStepCost * static_cast<double>((part.size() - 1) / 2);
+    return kCellCost + kStepCost * static_cast<double>((part.size() - 1) / 3);
   }
 
   /// The tape for a part of the values.
   FunctionTape tape_of(PartView part) const {
     std::vector<TapeValue> list = list_;
-    for (std::size_t k = 1; k < part.size(); k += 2)
-      list[part[k]].a = unpack(part[k + 1]), list[part[k]].b = unpack(part[k + 1] >> 16);
+    for (std::size_t k = 1; k < part.size(); k += 3) {
+      TapeValue& value = list[part[k]];
+      value.a = unpack(part[k + 1]), value.b = unpack(part[k + 1] >> 16), value.third = part[k + 2];
+    }
     return write_tape(list, part[0]);
   }
 
@@ -245,7 +249,7 @@ class FunctionRule : public CellRule {
   /// The value that a step is sure to equal, or kNoId: a branch of `min` and `max`, a factor of 1, or what is
   /// left of a term that is 0. `a` and `b` are its operands, in r[0] and r[1].
   static std::uint32_t equal_value(const TapeValue& step, std::uint32_t a, std::uint32_t b,
-                                   const Bounds (&r)[3]) {
+                                   const Bounds (&r)[4]) {
     const int first = unit_of(a), second = unit_of(b);
     switch (step.op) {
       case TapeOp::min:
@@ -312,18 +316,20 @@ class FunctionRule : public CellRule {
     needed[root] = true;
     std::size_t count = 0;
     const auto equal = [&](std::uint32_t v) { return v == kNoId ? kNoId : same[v]; };
-    for (std::size_t k = part.size() - 2; k + 1 > 1; k -= 2) {
+    for (std::size_t end = part.size(); end > 1; end -= 3) {
+      const std::size_t k = end - 3;
       if (!needed[part[k]]) continue;
       ++count;
-      for (const std::uint32_t operand : {unpack(part[k + 1]), unpack(part[k + 1] >> 16)})
+      for (const std::uint32_t operand : {unpack(part[k + 1]), unpack(part[k + 1] >> 16), part[k + 2]})
         if (operand != kNoId) needed[same[operand]] = true;
     }
-    out.reserve(1 + 2 * count);
+    out.reserve(1 + 3 * count);
     out.push_back(root);
-    for (std::size_t k = 1; k < part.size(); k += 2)
+    for (std::size_t k = 1; k < part.size(); k += 3)
       if (needed[part[k]]) {
         out.push_back(part[k]);
         out.push_back(pack(equal(unpack(part[k + 1])), equal(unpack(part[k + 1] >> 16))));
+        out.push_back(equal(part[k + 2]));
       }
   }
 

@@ -67,10 +67,11 @@ class Expansion {
       place_ = expression_.places[i];
       // Each node is the operand of one other only, which comes later.
       const int operands = operand_count(node.op);
-      Terms a, b;
+      Terms a, b, c;
       if (operands > 0) a = std::move(results[node.a]);
       if (operands > 1) b = std::move(results[node.b]);
-      results.push_back(apply_node(node, a, b));
+      if (operands > 2) c = std::move(results[node.c]);
+      results.push_back(apply_node(node, a, b, c));
       for (const Term& t : results.back())
         if (!(std::abs(t.c.hi) <= kGreatestCoefficient)) fail("a coefficient is out of range");
     }
@@ -82,7 +83,7 @@ class Expansion {
     throw Error(Location{"", 0, static_cast<int>(offset_ + place_) + 1}, message);
   }
 
-  Terms apply_node(const ExpressionNode& node, Terms& a, Terms& b) {
+  Terms apply_node(const ExpressionNode& node, Terms& a, Terms& b, const Terms& third) {
     switch (node.op) {
       case ExpressionOp::constant:
         return constant(node.value);
@@ -105,8 +106,9 @@ class Expansion {
       default:
         break;
     }
-    if (!is_constant(a) || !is_constant(b)) fail("not a polynomial: a function of x, y or z");
-    return number(apply(node.op, constant_of(a).hi, constant_of(b).hi));
+    if (!is_constant(a) || !is_constant(b) || !is_constant(third))
+      fail("not a polynomial: a function of x, y or z");
+    return number(apply(node.op, constant_of(a).hi, constant_of(b).hi, constant_of(third).hi));
   }
 
   Terms number(double value) const {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/noise.h"
 #include "core/precise_math.h"
 
 namespace oktett {
@@ -26,7 +27,8 @@ double sign_of(double a, double) { return a > 0 ? 1 : a < 0 ? -1 : a; }
 struct Function {
   const char* name;
   ExpressionOp op;
-  double (*apply)(double, double);  ///< the second number is ignored by functions of one
+  /// The second number is ignored by functions of one; null for those of three.
+  double (*apply)(double, double);
 };
 
 constexpr Function kFunctions[] = {
@@ -51,6 +53,7 @@ constexpr Function kFunctions[] = {
     {"round", ExpressionOp::round, [](double a, double) { return std::round(a); }},
     {"sign", ExpressionOp::sign, sign_of},
     {"hypot", ExpressionOp::hypot, precise::hypot},
+    {"noise", ExpressionOp::noise, nullptr},
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -185,17 +188,22 @@ class Parser {
     const std::string what = function.name;
     if (!accept('(')) fail(pos_, "expected '(' after " + what);
     std::uint32_t value = sum();
+    std::uint32_t arguments[3] = {value, kNoId, kNoId};
     int count = 1;
     const bool any_number = function.op == ExpressionOp::min || function.op == ExpressionOp::max;
     const int expected = operand_count(function.op);
     while (accept(',')) {
       if (++count > expected && !any_number) fail(pos_ - 1, what + " takes " + argument_count(expected));
-      value = add(place, function.op, value, sum());
+      if (expected == 3)
+        arguments[count - 1] = sum();
+      else
+        value = add(place, function.op, value, sum());
     }
     if (peek() != ')') fail(pos_, "expected ',' or ')' in the arguments of " + what);
     if (count < expected)
       fail(pos_, what + " takes " + argument_count(expected) + (any_number ? " or more" : ""));
     ++pos_;
+    if (expected == 3) return add(place, {function.op, arguments[0], arguments[1], 0, arguments[2]});
     return expected == 1 ? add(place, function.op, value) : value;
   }
 
@@ -215,6 +223,7 @@ class Parser {
 int operand_count(ExpressionOp op) {
   using enum ExpressionOp;
   if (op == constant || op == variable) return 0;
+  if (op == noise) return 3;
   const auto pairs = {add, subtract, multiply, divide, power, atan2, min, max, hypot};
   return std::find(pairs.begin(), pairs.end(), op) != pairs.end() ? 2 : 1;
 }
@@ -223,8 +232,10 @@ Expression parse_expression(std::string_view text, std::span<const std::string_v
   return Parser(text, variables).parse();
 }
 
-double apply(ExpressionOp op, double a, double b) {
+double apply(ExpressionOp op, double a, double b, double c) {
   switch (op) {
+    case ExpressionOp::noise:
+      return gradient_noise({a, b, c});
     case ExpressionOp::negate:
       return -a;
     case ExpressionOp::add:
@@ -251,7 +262,8 @@ double evaluate(const Expression& expression, std::span<const double> values) {
     else if (node.op == ExpressionOp::variable)
       results.push_back(values[node.a]);
     else
-      results.push_back(apply(node.op, results[node.a], node.b == kNoId ? 0 : results[node.b]));
+      results.push_back(apply(node.op, results[node.a], node.b == kNoId ? 0 : results[node.b],
+                              node.c == kNoId ? 0 : results[node.c]));
   }
   return results.back();
 }

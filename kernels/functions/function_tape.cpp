@@ -30,6 +30,7 @@ class Writer {
       if (uses_[v] == 0) continue;
       if (list_[v].a != kNoId) ++uses_[list_[v].a];
       if (list_[v].b != kNoId) ++uses_[list_[v].b];
+      if (list_[v].third != kNoId) ++uses_[list_[v].third];
       if (is_wave(list_[v].op)) waves_[{list_[v].op, list_[v].a}] = v;
     }
     registers_.resize(list_.size());
@@ -60,6 +61,7 @@ class Writer {
     TapeStep step{value.op, 0, 0, 0, value.n, value.c};
     if (value.a != kNoId) step.a = registers_[value.a];
     if (value.b != kNoId) step.b = registers_[value.b];
+    if (value.third != kNoId) step.n = registers_[value.third];
     const std::uint32_t other = partner(v);
     if (other != kNoId) {
       // The angle is used by both; neither result may overwrite it before the other is there.
@@ -73,6 +75,7 @@ class Writer {
       // What a result overwrites is read before.
       if (value.a != kNoId) release(value.a);
       if (value.b != kNoId) release(value.b);
+      if (value.third != kNoId) release(value.third);
       step.out = registers_[v] = acquire();
     }
     written_[v] = true;
@@ -109,6 +112,7 @@ bool has_second(TapeOp op) {
     case TapeOp::atan2:
     case TapeOp::min:
     case TapeOp::max:
+    case TapeOp::noise:
       return true;
     default:
       return false;
@@ -130,6 +134,7 @@ TapeValues values_of(const FunctionTape& tape) {
     TapeValue value{s.op, kNoId, kNoId, s.n, s.c};
     if (s.op != TapeOp::constant) value.a = in[s.a];
     if (has_second(s.op)) value.b = in[s.b];
+    if (s.op == TapeOp::noise) value.third = in[static_cast<std::size_t>(s.n)], value.n = 0;
     const auto add = [&](TapeOp op, std::uint8_t out) {
       value.op = op, in[out] = static_cast<std::uint32_t>(values.list.size());
       values.list.push_back(value);
@@ -169,7 +174,8 @@ class Values {
     return find({op, a, b, n, c});
   }
 
-  std::uint32_t translate(const ExpressionNode& node, std::size_t place, std::uint32_t a, std::uint32_t b) {
+  std::uint32_t translate(const ExpressionNode& node, std::size_t place, std::uint32_t a, std::uint32_t b,
+                          std::uint32_t c) {
     switch (node.op) {
       case ExpressionOp::constant:
         return constant(node.value);
@@ -196,6 +202,10 @@ class Values {
       case ExpressionOp::hypot:
         return make(TapeOp::sqrt, place,
                     sum(place, make(TapeOp::square, place, a), make(TapeOp::square, place, b)));
+      case ExpressionOp::noise: {
+        const TapeValue value{TapeOp::noise, a, b, 0, 0, c};
+        return is_constant(a) && is_constant(b) && is_constant(c) ? fold(value, place) : find(value);
+      }
       default:
         return make(simple(node.op), place, a, b);
     }
@@ -205,8 +215,10 @@ class Values {
   bool is_constant(std::uint32_t v) const { return v > 2 && list_[v].op == TapeOp::constant; }
 
  private:
-  using Key = std::tuple<TapeOp, std::uint32_t, std::uint32_t, int, std::uint64_t>;
-  static Key key(const TapeValue& v) { return {v.op, v.a, v.b, v.n, std::bit_cast<std::uint64_t>(v.c)}; }
+  using Key = std::tuple<TapeOp, std::uint32_t, std::uint32_t, int, std::uint64_t, std::uint32_t>;
+  static Key key(const TapeValue& v) {
+    return {v.op, v.a, v.b, v.n, std::bit_cast<std::uint64_t>(v.c), v.third};
+  }
 
   std::uint32_t find(TapeValue v) {
     const bool commutes =
@@ -218,12 +230,13 @@ class Values {
   }
 
   std::uint32_t fold(const TapeValue& v, std::size_t place) {
-    Gradient<Number> r[3];
+    Gradient<Number> r[4];
     tape::set(r[0], list_[v.a].c);
     tape::set(r[1], v.b == kNoId ? 0 : list_[v.b].c);
     tape::set(r[2], 0);
+    tape::set(r[3], v.third == kNoId ? 0 : list_[v.third].c);
     if (v.op == TapeOp::divide && list_[v.b].c == 0) fail(place, "division by zero");
-    tape::run_step({v.op, 2, 0, 1, v.n, v.c}, r);
+    tape::run_step({v.op, 2, 0, 1, v.third == kNoId ? v.n : 3, v.c}, r);
     const double result = r[2].v.part[0].v;
     if (!std::isfinite(result)) fail(place, "the value is not a finite number");
     return constant(result);
@@ -293,7 +306,8 @@ FunctionTape compile_function(std::string_view text) {
     const ExpressionNode& node = parsed.nodes[i];
     const int operands = operand_count(node.op);
     made.push_back(values.translate(node, parsed.places[i], operands > 0 ? made[node.a] : kNoId,
-                                    operands > 1 ? made[node.b] : kNoId));
+                                    operands > 1 ? made[node.b] : kNoId,
+                                    operands > 2 ? made[node.c] : kNoId));
   }
   const std::uint32_t root = made.back();
   return write_tape(values.list(), root);

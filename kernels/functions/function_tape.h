@@ -9,6 +9,7 @@
 
 #include "core/lanes.h"
 #include "core/mesh.h"
+#include "kernels/functions/noise_lanes.h"
 #include "kernels/functions/tape_data.h"
 #include "kernels/interval/dual.h"
 
@@ -25,6 +26,7 @@ struct TapeValue {
   std::uint32_t a = kNoId, b = kNoId;
   int n = 0;
   double c = 0;
+  std::uint32_t third = kNoId;  ///< the third operand of `noise`
 };
 
 /// A tape that computes value number `root`, without the values that it does not need. Throws Error if it is
@@ -271,6 +273,15 @@ OKTETT_NOINLINE Gradient<D, W, V> round(const Gradient<D, W, V>& a) {
 template <class D, Walls W, class V>
 OKTETT_NOINLINE Gradient<D, W, V> sign(const Gradient<D, W, V>& a) {
   return gradient::stepped(a, interval::sign_lanes(a.v), D(0.0));
+}
+template <class D, Walls W, class V>
+OKTETT_NOINLINE Gradient<D, W, V> noise(const Gradient<D, W, V>& x, const Gradient<D, W, V>& y,
+                                        const Gradient<D, W, V>& z) {
+  Gradient<D, W, V> r;
+  Vec3<D> by;
+  noise_lanes::slope(x.v, y.v, z.v, r.v, by);
+  r.d = add_lanes(add_lanes(scale_lanes(x.d, by.x), scale_lanes(y.d, by.y)), scale_lanes(z.d, by.z));
+  return r;
 }
 
 // ---- Functions of x, y and z as tapes.

@@ -18,7 +18,7 @@ inline constexpr int kMaxTapePower = 256;
 /// What a step computes from the registers a and b and the numbers c and n: OP(name, text, step) for each
 /// operation. `text` is the expression as it is written, `step` the statements that compute it.
 /// Powers with a real exponent are defined for a >= 0. `sin_cos` puts the cosine into the
-/// register b.
+/// register b. Of `noise`, n is the register of the third operand.
 #define OKTETT_TAPE_OPS(OP)                                                                        \
   OP(constant, "({c})", set(out, s.c))                                                             \
   OP(negate, "(-{a})", out = -a)                                                                   \
@@ -48,7 +48,8 @@ inline constexpr int kMaxTapePower = 256;
   OP(floor, "floor({a})", out = floor(a))                                                          \
   OP(ceil, "ceil({a})", out = ceil(a))                                                             \
   OP(round, "round({a})", out = round(a))                                                          \
-  OP(sign, "sign({a})", out = sign(a))
+  OP(sign, "sign({a})", out = sign(a))                                                             \
+  OP(noise, "noise({a}, {b}, {third})", out = noise(a, b, r[s.n]))
 enum class TapeOp : std::uint8_t {
 #define OP(name, text, step) name,
   OKTETT_TAPE_OPS(OP)
@@ -63,6 +64,13 @@ struct TapeStep {
   double c = 0;
 };
 
+/// Whether the step reads the register.
+inline bool reads(const TapeStep& step, std::uint8_t reg) {
+  if (step.op == TapeOp::constant) return false;
+  return step.a == reg || (step.b == reg && step.op != TapeOp::sin_cos) ||
+         (step.op == TapeOp::noise && step.n == reg);
+}
+
 /// A function as its steps in order. compile_function makes one.
 struct FunctionTape {
   std::vector<TapeStep> steps;
@@ -73,9 +81,9 @@ struct FunctionTape {
 
 /// Compiles a text: numbers, + - * / ^, parentheses, the variables x, y and z, the constants pi and e, and
 /// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
-/// sign hypot (angles in radians). Constants are rounded to double. a^b, where b is no constant, is exp(b log
-/// a); it and powers with an exponent that is not whole, or greater than kMaxTapePower, are defined for a >=
-/// 0 only.
+/// sign hypot (angles in radians) and noise(a, b, c), gradient_noise of core/noise.h. Constants are rounded
+/// to double. a^b, where b is no constant, is exp(b log a); it and powers with an exponent that is not whole,
+/// or greater than kMaxTapePower, are defined for a >= 0 only.
 ///
 /// Throws Error if the text cannot be read, holds a constant without a finite value, such as 1/0, or is too
 /// long. Error::where().column counts bytes in `text` from 1.

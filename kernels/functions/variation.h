@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/lanes.h"
+#include "kernels/functions/noise_lanes.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett {
@@ -343,6 +344,33 @@ template <class D>
 OKTETT_NOINLINE Variation<D> sign(const Variation<D>& a) {
   const Interval<D> w = sign(variation::wide(a));
   return variation::stepped(a, w.lo, w.hi);
+}
+
+template <class D>
+OKTETT_NOINLINE Variation<D> noise(const Variation<D>& x, const Variation<D>& y, const Variation<D>& z) {
+  const Variation<D>* const of[3] = {&x, &y, &z};
+  Interval<D> range[3], around;
+  Variation<D> r = variation::constant(D(0.0));
+  noise_lanes::range(x.v, y.v, z.v, r.v, range);
+  noise_lanes::range(variation::wide(x), variation::wide(y), variation::wide(z), around, range);
+  r.error = D(kNoiseError);
+  for (int k = 0; k < 3; ++k) {
+    const Variation<D>& a = *of[k];
+    const D slope = variation::magnitude(range[k]), sum = variation::total(a.g);
+    r.error = r.error + slope * a.error;
+    r.g = add_lanes(r.g, scale_lanes(a.g, slope));
+    // The derivatives change with the errors of all three operands.
+    D wrong(kNoiseSlopeError);
+    for (int j = 0; j < 3; ++j) wrong = wrong + D(j == k ? kMostNoiseBend : kMostNoiseTwist) * of[j]->error;
+    r.slope_error = r.slope_error + slope * (a.slope_error + D(variation::kSlope) * sum) + wrong * sum;
+    for (int i = 0; i < 6; ++i) r.h[i] = r.h[i] + slope * a.h[i];
+    variation::add_products(D(0.5 * kMostNoiseBend), a.g, a.g, r.h);
+    for (int j = 0; j < k; ++j) variation::add_products(D(kMostNoiseTwist), a.g, of[j]->g, r.h);
+    r.falls = r.falls + (a.falls + a.rises);
+    r.doubt = r.doubt + a.doubt + (slope - slope);
+  }
+  r.rises = r.falls;
+  return r;
 }
 
 }  // namespace oktett

@@ -37,6 +37,8 @@ struct HeightFieldShape {
   HeightWalk walk = HeightWalk::pyramid;
   /// The interpolation of the scene file, for which `grid` was made.
   HeightInterpolation interpolation = HeightInterpolation::bilinear;
+  /// In scene files, whether `grid` is made from the numbers of the colours of a palette.
+  bool palette = false;
 
   static constexpr ShapeInfo kShapeInfo{"height_field",
                                         "heights over a rectangle, from one of `file` and `function`"};
@@ -44,6 +46,10 @@ struct HeightFieldShape {
     p.optional("file", ByHand{"file", "file"},
                "a grey image. 8 and 16 bits have values from 0 to 1, all others (EXR, TIFF) those that are "
                "stored; the top row lies at the least z");
+    p.field(
+        "palette", palette,
+        "whether the heights are the numbers of the colours in the palette of a PNG image, counted from 0 "
+        "and divided by 256");
     p.optional("function", ByHand{"[expression](#values) in x and z", "text"},
                "the heights where there is no file");
     p.field("samples", ByHand{"whole number or `[columns, rows]`, at least 2", "samples", "512"},

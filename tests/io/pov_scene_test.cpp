@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "io/scene/scene_file.h"
 #include "io/yaml/write_yaml.h"
 #include "render/picture/render.h"
+#include "tests/io/palette_png.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::pov_scene_test {
@@ -506,11 +508,63 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
   EXPECT_NE(text("#declare F = function { transform { translate <1, 2, 3> } } ", "F(x, y, z).y")
                 .find("(2 + 1 * y)"),
             std::string::npos);
-  EXPECT_EQ(
-      files.warnings(
-          "#version 3.7;\n#declare F = function { internal(76) } isosurface { function { F(x, y, z) }" + end),
-      "scene.pov:2:40: warning: this function contains noise (f_noise3d or f_noise_generator), which "
-      "expressions here do not have; it is left out\n");
+  const std::string torn = "isosurface { function { F(x, y, z) } contained_by { box { -1, 1 } } } ";
+  EXPECT_EQ(files.warnings("#version 3.7;\n#declare F = function { internal(6) } " + torn + torn),
+            "scene.pov:2:39: warning: this function contains a function of functions.inc that has no formula "
+            "here (F), which expressions here do not have; it is left out\n");
+}
+
+TEST(PovScene, NoiseInFunctions) {
+  const PovFiles files;
+  const auto text = [&](const std::string& declared, const std::string& function) {
+    const std::string found =
+        files.object("#version 3.7;\n#declare F = function { " + declared + " } isosurface { function { " +
+                     function + " } contained_by { box { -1, 1 } } }");
+    const std::string before = "{implicit: {function: \"", after = "\", bounds: ";
+    const std::size_t end = found.find(after);
+    return found.starts_with(before) && end != std::string::npos
+               ? found.substr(before.size(), end - before.size())
+               : "no function: " + found;
+  };
+  EXPECT_EQ(text("internal(76)", "F(2*x, y, z)"), "(0.5 + 0.5 * noise(((2 * x)), (y), (z)))");
+  EXPECT_EQ(text("internal(78)", "F(x, y, z, 3)"), "(0.5 + 0.5 * noise((x), (y), (z)))");
+  EXPECT_EQ(text("pattern { bozo scale <7, 1, 2> translate y }", "F(x, y, z)"),
+            "(0.5 + 0.5 * noise((0.14285714285714285 * x), (y + (-1)), (0.5 * z)))");
+  EXPECT_EQ(text("pattern { planar rotate 90*z }", "F(x, y, z) - 0.5").substr(0, 16), "(max(0, 1 - abs(");
+
+  // The values are those of the pattern, and those of a ridged multifractal.
+  const Scene scene = load_scene(files.dir.write(
+      "values.pov",
+      "#version 3.7;\n#declare F = function { internal(59) } #declare G = function { pattern { granite scale "
+      "3 } }"
+      " #declare N = function { internal(76) } #declare W = function { pattern { wrinkles } }"
+      " isosurface { function { F(x, y, z, 0.7, 2.1, 2, 0.9, 1.3, 3) } contained_by { box { -9, 9 } } }"
+      " isosurface { function { G(x, y, z) } contained_by { box { -9, 9 } } }"
+      " isosurface { function { W(x, y, z) } contained_by { box { -9, 9 } } }"
+      " sphere { <F(0.3, 0.4, 0.7, 0.7, 2.1, 2, 0.9, 1.3, 3), G(0.3, 0.4, 0.7), W(0.3, 0.4, 0.7)>, 1 }"
+      " sphere { <N(0.3, 0.4, 0.7), N(0.63, 0.84, 1.47), 0>, 1 }"));
+  ASSERT_EQ(scene.objects.size(), 5u);
+  const auto value = [&](std::size_t i) {
+    const auto& shape = std::get<ImplicitShape>(std::get<ExactShape>(scene.objects[i].shape).form);
+    return value_at(shape.function, 0.3, 0.4, 0.7);
+  };
+  const auto center = [&](std::size_t i) {
+    return std::get<SpheresShape>(scene.objects[i].shape).spheres[0].center;
+  };
+  EXPECT_NEAR(value(0), center(3).x, 1e-6);
+  EXPECT_NEAR(value(1), center(3).y, 1e-6);
+  EXPECT_NEAR(value(2), center(3).z, 1e-6);
+  const double first = 0.9 - std::abs(2.0 * center(4).x - 1), second = 0.9 - std::abs(2.0 * center(4).y - 1);
+  const double signal = first * first, weight = std::min(1.0, signal * 1.3);
+  EXPECT_NEAR(value(0), signal + weight * second * second * std::pow(2.1, -0.7), 1e-6);
+}
+
+TEST(PovScene, HeightsOfPalettesAreNumbers) {
+  const PovFiles files;
+  files.dir.write("a.png", test::PalettePng{}.file());
+  EXPECT_NE(
+      files.object("#version 3.7;\nheight_field { png \"a.png\" }").find("a.png\", palette: true, size: "),
+      std::string::npos);
 }
 
 TEST(PovScene, WhatIsAskedStandsWhereItWasFound) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "io/scene/write_scene.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett::scene_functions_test {
@@ -97,6 +98,20 @@ TEST(SceneFunctions, WhatIsMissingOrWrong) {
     SCOPED_TRACE(c.object);
     expect_starts(files.error_v1("objects: [{" + c.object + "}]"), c.error);
   }
+}
+
+/// A function is written out and read again: the values are the same.
+TEST(SceneFunctions, NoiseIsWrittenAsItWasRead) {
+  const SceneFiles files;
+  const Scene scene = files.load_v1("objects: [{implicit: {function: \"y - noise(2*x, x*z, z + 1)*0.25\", " +
+                                    kBounds + "}}]");
+  const std::string path = (files.dir.path() / "again.yaml").string();
+  write_scene_file(path, scene);
+  const Scene again = load_scene_file(path);
+  const auto& first = std::get<ImplicitShape>(shape_of<ExactShape>(scene, 0).form).function;
+  const auto& second = std::get<ImplicitShape>(shape_of<ExactShape>(again, 0).form).function;
+  for (const double x : {0.3, -0.7, 0.9})
+    EXPECT_EQ(value_at(first, x, 0.25, 1 - x), value_at(second, x, 0.25, 1 - x));
 }
 
 TEST(SceneFunctions, ConstantsAreSkipped) {

@@ -100,7 +100,7 @@ TEST(Expression, ListsOperandsBeforeTheirUsers) {
   for (std::size_t i = 0; i < parsed.nodes.size(); ++i) {
     const ExpressionNode& node = parsed.nodes[i];
     EXPECT_TRUE(operand_count(node.op) == 0 || node.a < i);
-    EXPECT_TRUE(operand_count(node.op) == 2 ? node.b < i : node.b == kNoId);
+    EXPECT_TRUE(operand_count(node.op) >= 2 ? node.b < i : node.b == kNoId);
   }
   EXPECT_EQ(parsed.nodes.back().op, ExpressionOp::power);
 }

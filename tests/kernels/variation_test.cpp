@@ -12,6 +12,7 @@
 #include "kernels/functions/expression.h"
 #include "kernels/functions/function_tape.h"
 #include "tests/support/random_expression.h"
+#include "verify/oracles/exact_noise.h"
 
 namespace oktett::variation_test {
 namespace {
@@ -26,6 +27,7 @@ long double exact_value(const Expression& e, const long double (&p)[3]) {
   for (const ExpressionNode& n : e.nodes) {
     const int operands = operand_count(n.op);
     const long double a = operands > 0 ? v[n.a] : 0, b = operands > 1 ? v[n.b] : 0;
+    const long double c = operands > 2 ? v[n.c] : 0;
     const auto value = [&]() -> long double {
       switch (n.op) {
         case ExpressionOp::constant:
@@ -84,6 +86,8 @@ long double exact_value(const Expression& e, const long double (&p)[3]) {
           return static_cast<long double>((a > 0) - (a < 0));
         case ExpressionOp::hypot:
           return std::hypot(a, b);
+        case ExpressionOp::noise:
+          return exact_noise(a, b, c);
       }
       return 0;
     };
@@ -98,7 +102,7 @@ bool has_constant_parts(const Expression& e) {
   for (const ExpressionNode& n : e.nodes) {
     const int operands = operand_count(n.op);
     constant.push_back(n.op != ExpressionOp::variable && (operands < 1 || constant[n.a]) &&
-                       (operands < 2 || constant[n.b]));
+                       (operands < 2 || constant[n.b]) && (operands < 3 || constant[n.c]));
     if (constant.back() && operands > 0) return true;
   }
   return false;

@@ -17,7 +17,7 @@ inline std::string random_expression(std::mt19937& random, int depth) {
                                        "floor", "ceil", "round", "sign", "-"};
   static const char* const kPowers[] = {"^2", "^3", "^-1", "^-2", "^0", "^1.5", "^-0.3", "^7", "^0.5"};
   const std::string a = random_expression(random, depth - 1), b = random_expression(random, depth - 1);
-  switch (random() % 12) {
+  switch (random() % 13) {
     case 0:
     case 1:
     case 2:
@@ -37,6 +37,8 @@ inline std::string random_expression(std::mt19937& random, int depth) {
       return (random() % 2 ? "min(" : "max(") + a + "," + b + ")";
     case 10:
       return (random() % 2 ? "hypot(" : "atan2(") + a + "," + b + ")";
+    case 11:
+      return "noise(" + a + "," + b + "," + random_expression(random, depth - 1) + ")";
     default:
       return "(" + a + ")^(" + b + ")";
   }

@@ -8,6 +8,7 @@
 
 #include "kernels/functions/function_tape.h"
 #include "verify/oracles/exact_families.h"
+#include "verify/oracles/exact_noise.h"
 
 namespace oktett {
 
@@ -159,6 +160,17 @@ std::vector<Named> combined(CaseRandom& random) {
                 0.2L * std::tan(p.x / 2);
        },
        2},
+      {"x^2 + y^2 + z^2 - 1 + 0.4*noise(" + text(3 * c) + "*x, 2*y + 0.3, 2*z)",
+       [c](const Vec3l& p) {
+         return dot(p, p) - 1 + 0.4L * exact_noise(3 * c * p.x, 2 * p.y + 0.3L, 2 * p.z);
+       },
+       1.5},
+      {"y - 0.3*noise(2*x, 0, 2*z) - 0.1*abs(noise(5*x, 5*y, 5*z))",
+       [](const Vec3l& p) {
+         return p.y - 0.3L * exact_noise(2 * p.x, 0, 2 * p.z) -
+                0.1L * std::abs(exact_noise(5 * p.x, 5 * p.y, 5 * p.z));
+       },
+       1.5},
       {"abs(abs(abs(x) - 0.5) - 0.2) + abs(y) + abs(abs(z) - 0.4) - 0.3",
        [](const Vec3l& p) {
          return std::abs(std::abs(std::abs(p.x) - 0.5L) - 0.2L) + std::abs(p.y) +

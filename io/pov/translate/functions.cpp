@@ -8,6 +8,7 @@
 
 #include "io/pov/internal_functions.h"
 #include "io/pov/read_pov.h"
+#include "io/pov/translate/pattern.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett::pov {
@@ -72,10 +73,38 @@ constexpr Formula kFormulas[] = {
     {"radians", "({0} * pi / 180)"},
 };
 
+/// A sum over the octaves of a pattern of noise, each twice as fine and half as high as the one before.
+/// `noise` is {0} at the place in its octave, ({1}, {2}, {3}).
+std::string octaves(const char* noise, int count, double scale, double weight,
+                    const std::array<std::string, 3>& p) {
+  std::string sum;
+  for (int k = 0; k < count; ++k, scale *= 2, weight *= 0.5) {
+    const std::string at = fmt::format("noise({0} * {3}, {1} * {3}, {2} * {3})", p[0], p[1], p[2], scale);
+    sum += fmt::format("{}{} * {}", k == 0 ? "" : " + ", fmt::format(fmt::runtime(noise), at), weight);
+  }
+  return sum;
+}
+
+/// The values of a pattern at p, which are those of the pattern of this name in scene files, where they are
+/// between 0 and 1 everywhere. Empty if it has no formula.
+std::string pattern_formula(std::string_view word, const std::array<std::string, 3>& p) {
+  const auto at = [&](const char* text) { return fmt::format(fmt::runtime(text), p[0], p[1], p[2]); };
+  if (word == "bozo" || word == "bumps" || word == "spotted") return at("(0.5 + 0.5 * noise({}, {}, {}))");
+  if (word == "dents") return at("(0.5 + 0.5 * noise({}, {}, {}))^3");
+  if (word == "granite") return "min(1, " + octaves("abs({})", 6, 4, 1, p) + ")";
+  if (word == "wrinkles") return "(" + octaves("max(0, min(1, 0.5 + {}))", 10, 1, 0.5, p) + ")";
+  if (word == "leopard") return at("((sin({}) + sin({}) + sin({})) / 3)^2");
+  if (word == "spherical") return at("max(0, 1 - sqrt(({})^2 + ({})^2 + ({})^2))");
+  if (word == "cylindrical") return at("max(0, 1 - hypot({0}, {2}))");
+  if (word == "planar") return at("max(0, 1 - abs({1}))");
+  if (word == "boxed") return at("max(0, 1 - max(abs({}), abs({}), abs({})))");
+  return "";
+}
+
 class Writer {
  public:
-  Writer(const Function& function, std::vector<std::string> parameters, const Document& document, int depth)
-      : function_(function), parameters_(std::move(parameters)), document_(document), depth_(depth) {}
+  Writer(const Function& function, std::vector<std::string> parameters, Context& context, int depth)
+      : function_(function), parameters_(std::move(parameters)), context_(context), depth_(depth) {}
 
   std::string text() {
     if (function_.nodes.empty()) throw Unwritable{"an empty function"};
@@ -105,11 +134,11 @@ class Writer {
       case Op::user:
         if (node.function == nullptr) throw Unwritable{"an unknown function"};
         operands.resize(std::max(operands.size(), node.function->parameters.size()), "0");
-        return Writer(*node.function, operands, document_, depth_ + 1).text();
+        return Writer(*node.function, operands, context_, depth_ + 1).text();
       case Op::spline:
         throw Unwritable{"a spline"};
       case Op::pattern:
-        throw Unwritable{"a pattern"};
+        return pattern(node, operands);
       case Op::transform:
         return transformed(node, operands);
     }
@@ -117,8 +146,6 @@ class Writer {
   }
 
   std::string internal(std::uint32_t number, const std::vector<std::string>& operands) const {
-    if (number == kNoiseFunction || number == kNoiseGeneratorFunction)
-      throw Unwritable{"noise (f_noise3d or f_noise_generator)"};
     if (std::optional<std::string> text = internal_text(number, operands)) return *text;
     throw Unwritable{
         fmt::format("a function of functions.inc that has no formula here ({})",
@@ -129,12 +156,58 @@ class Writer {
   std::string transformed(const FunctionNode& node, const std::vector<std::string>& operands) const {
     if (node.block == nullptr || operands.size() < 3 || node.index > 2)
       throw Unwritable{"an unknown transform"};
-    const Matrix matrix = evaluate_transform(*node.block, document_);
+    const Matrix matrix = evaluate_transform(*node.block, context_.document);
     std::string sum = number_of(matrix[3][node.index]);
     for (std::size_t i = 0; i < 3; ++i)
       if (matrix[i][node.index] != 0)
         sum += fmt::format(" + {} * {}", number_of(matrix[i][node.index]), operands[i]);
     return "(" + sum + ")";
+  }
+
+  std::string pattern(const FunctionNode& node, const std::vector<std::string>& operands) const {
+    if (node.block == nullptr || node.block->keyword != "pattern" || operands.size() < 3)
+      throw Unwritable{"a pigment"};
+    PatternReader reader(context_, [](const Block&) -> Node { return nullptr; });
+    Arguments arguments(context_, *node.block);
+    PovPattern p;
+    while (!arguments.at_end())
+      if (!reader.take(arguments, p)) throw Unwritable{"a pattern with more than expressions have"};
+    const std::string name = fmt::format("a pattern '{}'", p.word);
+    Affine all;
+    for (const auto& modifier : p.modifiers) {
+      const auto* const moves = std::get_if<Moves>(&modifier);
+      if (moves == nullptr) throw Unwritable{name + " with a warp"};
+      all = moves->all * all;
+    }
+    if (!(p.turbulence == Vec3d{0, 0, 0})) throw Unwritable{name + " with turbulence"};
+    if (!p.wave.empty() || p.frequency != 1 || p.phase != 0) throw Unwritable{name + " with a wave"};
+    if (!all.is_invertible()) throw Unwritable{name + " with a transform that has no inverse"};
+    std::string text = pattern_formula(p.word, moved(all.inverse(), operands));
+    if (text.empty()) throw Unwritable{name};
+    return text;
+  }
+
+  /// The coordinates of the place to which a map takes the place that three operands are.
+  static std::array<std::string, 3> moved(const Affine& map, const std::vector<std::string>& operands) {
+    std::array<std::string, 3> to;
+    const Vec3d origin = map.point({0, 0, 0});
+    for (int row = 0; row < 3; ++row) {
+      std::string sum;
+      for (int column = 0; column < 3; ++column) {
+        Vec3d unit{0, 0, 0};
+        unit[column] = 1;
+        const double factor = map.vector(unit)[row];
+        if (factor == 0) continue;
+        sum += sum.empty() ? "" : " + ";
+        sum += factor == 1
+                   ? operands[static_cast<std::size_t>(column)]
+                   : fmt::format("{} * {}", number_of(factor), operands[static_cast<std::size_t>(column)]);
+      }
+      if (origin[row] != 0 || sum.empty())
+        sum += fmt::format("{}{}", sum.empty() ? "" : " + ", number_of(origin[row]));
+      to[static_cast<std::size_t>(row)] = "(" + sum + ")";
+    }
+    return to;
   }
 
   static std::string call(std::string_view name, const std::vector<std::string>& operands) {
@@ -171,7 +244,7 @@ class Writer {
 
   const Function& function_;
   std::vector<std::string> parameters_;
-  const Document& document_;
+  Context& context_;
   int depth_;
   std::vector<std::string> texts_;
 };
@@ -181,13 +254,14 @@ class Writer {
 std::optional<std::string> function_text(Context& context, const Function& function, const Place& where,
                                          double threshold) {
   try {
-    std::string text = Writer(function, {"x", "y", "z"}, context.document, 0).text();
+    std::string text = Writer(function, {"x", "y", "z"}, context, 0).text();
     if (threshold != 0) text += fmt::format(" - {}", number_of(threshold));
     parse_expression(text, std::array<std::string_view, 3>{"x", "y", "z"});
     return text;
   } catch (const Unwritable& reason) {
-    context.warn(where, "this function contains " + reason.why +
-                            ", which expressions here do not have; it is left out");
+    context.tell("function with " + reason.why, where,
+                 "this function contains " + reason.why +
+                     ", which expressions here do not have; it is left out");
   } catch (const std::exception& error) {
     context.warn(where, fmt::format("this function is no expression here: {}; it is left out", error.what()));
   }

@@ -524,7 +524,7 @@ class ShapeMaker {
   std::optional<Shapes> height_field() {
     std::string path;
     Place at = where_;
-    bool smooth = false;
+    bool smooth = false, gif = false;
     double water = 0;
     while (!a_.at_end()) {
       if (const auto* const text = std::get_if<std::string>(&a_.peek().value)) {
@@ -538,6 +538,7 @@ class ShapeMaker {
                  a_.peek_word() == "gif" || a_.peek_word() == "pgm" || a_.peek_word() == "ppm" ||
                  a_.peek_word() == "tiff" || a_.peek_word() == "sys" || a_.peek_word() == "pot" ||
                  a_.peek_word() == "exr" || a_.peek_word() == "hdr") {
+        gif = a_.peek_word() == "gif";
         a_.take();
       } else {
         break;
@@ -545,15 +546,20 @@ class ShapeMaker {
     }
     if (path.empty()) return left_out("of height fields only those of image files are read");
     path = find_file(context_, at, path);
+    const bool palette = has_palette(path);
     try {
-      read_heights(path, kMaxHeightSide, kMaxHeightSamples);
+      (palette ? read_palette_heights : read_heights)(path, kMaxHeightSide, kMaxHeightSamples);
     } catch (const Error& error) {
       return left_out(error.what());
     }
+    if (gif)
+      context_.tell("GIF heights", at,
+                    "the heights of a GIF image are its grey values, not the numbers of its colours");
     if (smooth)
       context_.tell("smooth height field", where_, "height fields are triangles without smooth normals");
     const Node keys = map();
     tree_.put(keys, "file", tree_.text(at, path));
+    if (palette) tree_.put(keys, "palette", tree_.word(where_, "true"));
     tree_.put(keys, "size", vector({1, 1, 1}));
     tree_.put(keys, "interpolation", tree_.word(where_, "triangles"));
     tree_.put(keys, "base", number(-1e-4));

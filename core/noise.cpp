@@ -1,0 +1,213 @@
+#include "core/noise.h"
+
+#include <algorithm>
+
+#include "core/random.h"
+
+namespace oktett {
+
+std::int64_t cell_of(double x) { return std::abs(x) < 0x1p62 ? static_cast<std::int64_t>(std::floor(x)) : 0; }
+
+std::uint64_t lattice_bits(std::int64_t x, std::int64_t y, std::int64_t z) {
+  std::uint64_t bits = mix_bits(static_cast<std::uint64_t>(x) + kGoldenBits);
+  bits = mix_bits(bits + static_cast<std::uint64_t>(y) + kGoldenBits);
+  return mix_bits(bits + static_cast<std::uint64_t>(z) + kGoldenBits);
+}
+
+namespace {
+
+/// Where a corner of a cell lies in the cell: bit k of its number is its coordinate k.
+Vec3d corner_place(int i) {
+  return {static_cast<double>(i & 1), static_cast<double>(i >> 1 & 1), static_cast<double>(i >> 2)};
+}
+
+/// The scalar product of `d` with the gradient of a lattice point: one of the twelve vectors to the middles
+/// of the edges of a cube.
+double edge_product(std::uint64_t bits, const Vec3d& d) {
+  const double a = bits & 1 ? -1 : 1, b = bits & 2 ? -1 : 1;
+  switch ((bits >> 32) % 3) {
+    case 0:
+      return a * d.x + b * d.y;
+    case 1:
+      return a * d.y + b * d.z;
+    default:
+      return a * d.z + b * d.x;
+  }
+}
+
+/// The random bits of the corners of a cell.
+void corner_bits(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t (&bits)[8]) {
+  for (int i = 0; i < 8; ++i) bits[i] = lattice_bits(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
+}
+
+/// That vector itself.
+Vec3d edge_vector(std::uint64_t bits) {
+  return {edge_product(bits, {1, 0, 0}), edge_product(bits, {0, 1, 0}), edge_product(bits, {0, 0, 1})};
+}
+
+/// 0 at 0 and 1 at 1, with first and second derivatives of 0 there.
+double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+double fade_slope(double t) { return 30 * (t * t) * ((t - 1) * (t - 1)); }
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+/// From the values at the corners, and the faded place between them.
+template <class T>
+T between(const T (&c)[8], const T (&t)[3]) {
+  const T low = mix(mix(c[0], c[1], t[0]), mix(c[2], c[3], t[0]), t[1]);
+  const T high = mix(mix(c[4], c[5], t[0]), mix(c[6], c[7], t[0]), t[1]);
+  return mix(low, high, t[2]);
+}
+
+/// Between four edges of the cell along one of the axes; rise(i, j) is of the edge from corner i to j.
+template <class T, class Rise>
+T between_edges(int axis, const T (&t)[3], const Rise& rise) {
+  const int first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2, step = 1 << axis;
+  T edge[4];
+  for (int i = 0; i < 4; ++i) {
+    const int from = (i & 1) << first | (i >> 1) << second;
+    edge[i] = rise(from, from | step);
+  }
+  return mix(mix(edge[0], edge[1], t[first]), mix(edge[2], edge[3], t[first]), t[second]);
+}
+
+/// A point's place in its cell, the random bits and the products of the cell's corners.
+struct Place {
+  explicit Place(const Vec3d& p) {
+    corner_bits(cell_of(p.x), cell_of(p.y), cell_of(p.z), bits);
+    f = {fraction_of(p.x), fraction_of(p.y), fraction_of(p.z)};
+    for (int i = 0; i < 8; ++i) corner[i] = edge_product(bits[i], f - corner_place(i));
+    for (int k = 0; k < 3; ++k) t[k] = fade(f[k]);
+  }
+
+  std::uint64_t bits[8];
+  Vec3d f;
+  double corner[8], t[3];
+};
+
+}  // namespace
+
+double gradient_noise(const Vec3d& p) {
+  const Place at(p);
+  return between(at.corner, at.t);
+}
+
+NoiseSlope noise_slope(const Vec3d& p) {
+  const Place at(p);
+  NoiseSlope slope{between(at.corner, at.t), {}};
+  Vec3d vectors[8];
+  for (int i = 0; i < 8; ++i) vectors[i] = edge_vector(at.bits[i]);
+  for (int k = 0; k < 3; ++k) {
+    const double steep = fade_slope(at.f[k]);
+    slope.gradient[k] = between_edges(k, at.t, [&](int i, int j) {
+      return (at.corner[j] - at.corner[i]) * steep + mix(vectors[i][k], vectors[j][k], at.t[k]);
+    });
+  }
+  return slope;
+}
+
+namespace {
+
+/// Computed without rounding outwards: noise_range widens what it returns by all errors.
+struct Range {
+  double lo, hi;
+};
+
+Range operator+(const Range& a, const Range& b) { return {a.lo + b.lo, a.hi + b.hi}; }
+/// By a range of numbers that are not negative.
+Range scaled(const Range& a, const Range& by) {
+  return {a.lo * (a.lo < 0 ? by.hi : by.lo), a.hi * (a.hi < 0 ? by.lo : by.hi)};
+}
+/// Of all means: `t` is in [0, 1], and a mean rises with what it is a mean of.
+Range mix(const Range& a, const Range& b, const Range& t) {
+  const double lo[2] = {mix(a.lo, b.lo, t.lo), mix(a.lo, b.lo, t.hi)};
+  const double hi[2] = {mix(a.hi, b.hi, t.lo), mix(a.hi, b.hi, t.hi)};
+  return {std::min(lo[0], lo[1]), std::max(hi[0], hi[1])};
+}
+/// Of the scalar product of `g` with the points of a box.
+Range product(const Vec3d& g, const Vec3d& lo, const Vec3d& hi) {
+  Range r{0, 0};
+  for (int k = 0; k < 3; ++k)
+    r = r + Range{g[k] * (g[k] < 0 ? hi[k] : lo[k]), g[k] * (g[k] < 0 ? lo[k] : hi[k])};
+  return r;
+}
+
+/// Of a box in one cell: of the value, and of the three derivatives.
+void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d& hi, Range (&out)[4]) {
+  Vec3d vectors[8];
+  Range corner[8], t[3];
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d at = corner_place(i);
+    vectors[i] = edge_vector(bits[i]);
+    corner[i] = product(vectors[i], lo - at, hi - at);
+  }
+  for (int k = 0; k < 3; ++k) t[k] = {std::clamp(fade(lo[k]), 0.0, 1.0), std::clamp(fade(hi[k]), 0.0, 1.0)};
+  out[0] = between(corner, t);
+  for (int k = 0; k < 3; ++k) {
+    // It rises up to 1/2 and falls from there.
+    const double a = fade_slope(lo[k]), b = fade_slope(hi[k]);
+    const Range steep{std::min(a, b), lo[k] <= 0.5 && 0.5 <= hi[k] ? 1.875 : std::max(a, b)};
+    out[1 + k] = between_edges(k, t, [&](int i, int j) {
+      // The difference of two products is one with the difference of the vectors, but for a constant.
+      const double apart = dot(vectors[i], corner_place(i)) - dot(vectors[j], corner_place(j));
+      const Range rise = product(vectors[j] - vectors[i], lo, hi) + Range{apart, apart};
+      const Range from{vectors[i][k], vectors[i][k]}, to{vectors[j][k], vectors[j][k]};
+      return scaled(rise, steep) + mix(from, to, t[k]);
+    });
+  }
+}
+
+}  // namespace
+
+NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
+  constexpr double kFar = 0x1p50, kMostCells = 8;
+  const Vec3d steepest{kMostNoiseSlope, kMostNoiseSlope, kMostNoiseSlope};
+  const NoiseRange all{-kMostNoise, kMostNoise, -steepest, steepest};
+  std::int64_t first[3], last[3];
+  double cells = 1;
+  for (int k = 0; k < 3; ++k) {
+    if (!(-kFar <= lo[k] && lo[k] <= hi[k] && hi[k] <= kFar)) return all;
+    first[k] = cell_of(lo[k]);
+    // A border belongs to the cells on both sides, which agree there.
+    last[k] = std::max(first[k], static_cast<std::int64_t>(std::ceil(hi[k])) - 1);
+    cells *= static_cast<double>(last[k] - first[k] + 1);
+  }
+  if (cells > kMostCells) return all;
+  Range whole[4];
+  bool is_first = true;
+  for (std::int64_t z = first[2]; z <= last[2]; ++z)
+    for (std::int64_t y = first[1]; y <= last[1]; ++y)
+      for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+        std::uint64_t bits[8];
+        corner_bits(x, y, z, bits);
+        const double corner[3] = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+        Vec3d from, to;
+        for (int k = 0; k < 3; ++k)
+          from[k] = std::clamp(lo[k] - corner[k], 0.0, 1.0), to[k] = std::clamp(hi[k] - corner[k], 0.0, 1.0);
+        Range part[4];
+        range_in_cell(bits, from, to, part);
+        for (int i = 0; i < 4; ++i)
+          whole[i] = is_first ? part[i]
+                              : Range{std::min(whole[i].lo, part[i].lo), std::max(whole[i].hi, part[i].hi)};
+        is_first = false;
+      }
+  NoiseRange range;
+  Vec3d middle;
+  double reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    range.slope_lo[k] = std::max(whole[1 + k].lo - kNoiseSlopeError, -kMostNoiseSlope);
+    range.slope_hi[k] = std::min(whole[1 + k].hi + kNoiseSlopeError, kMostNoiseSlope);
+    middle[k] = lo[k] + 0.5 * (hi[k] - lo[k]);
+    reach += std::max(-range.slope_lo[k], range.slope_hi[k]) * std::max(middle[k] - lo[k], hi[k] - middle[k]);
+  }
+  if (reach < 1) {
+    // By the mean value theorem, which tells more of small boxes.
+    const double at = gradient_noise(middle);
+    whole[0].lo = std::max(whole[0].lo, at - reach), whole[0].hi = std::min(whole[0].hi, at + reach);
+  }
+  range.lo = std::max(whole[0].lo - kNoiseError, -kMostNoise);
+  range.hi = std::min(whole[0].hi + kNoiseError, kMostNoise);
+  return range;
+}
+
+}  // namespace oktett
