@@ -11,6 +11,7 @@ file(GLOB sources CONFIGURE_DEPENDS
 list(FILTER sources EXCLUDE REGEX "/(write|glb)_[a-z_]*\\.cpp$")
 add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp ${PROJECT_SOURCE_DIR}/render/pattern_kinds.cpp
   ${PROJECT_SOURCE_DIR}/io/image/color.cpp
+  ${PROJECT_SOURCE_DIR}/kernels/functions/expression.cpp
   support/temp_dir.cpp fuzz/no_images.cpp)
 target_compile_features(sanitized_readers PUBLIC cxx_std_20)
 target_compile_options(sanitized_readers PUBLIC ${sanitizers})

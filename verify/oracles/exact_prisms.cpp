@@ -60,6 +60,25 @@ struct OutlineTruth {
   R lo_x = 0, hi_x = 0, lo_z = 0, hi_z = 0;
 };
 
+/// Straight edges that lie on each other two by two are not there.
+template <class R>
+void drop_doubled(std::vector<OutlineTruth<R>>& edges) {
+  const auto same = [](const OutlineTruth<R>& a, const OutlineTruth<R>& b) {
+    const R from[2] = {a.x.c[0], a.z.c[0]}, to[2] = {a.x.end, a.z.end};
+    const bool along = from[0] == b.x.c[0] && from[1] == b.z.c[0] && to[0] == b.x.end && to[1] == b.z.end;
+    const bool back = to[0] == b.x.c[0] && to[1] == b.z.c[0] && from[0] == b.x.end && from[1] == b.z.end;
+    return along || back;
+  };
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t k = i + 1; k < edges.size(); ++k) {
+      if (!same(edges[i], edges[k])) continue;
+      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
+      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
+      --i;
+      break;
+    }
+}
+
 /// By the definitions of the curves; the last piece closes the outline.
 template <class R>
 std::vector<OutlineTruth<R>> pieces_of(const PrismShape& s) {
@@ -109,6 +128,7 @@ std::vector<OutlineTruth<R>> pieces_of(const PrismShape& s) {
       });
     if (!(p[begin] == p[end])) line(end, begin);
   }
+  if (s.curve == PrismCurve::linear) drop_doubled(all);
   return all;
 }
 
