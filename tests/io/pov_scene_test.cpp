@@ -314,6 +314,20 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
       "diffuse: 0.6}}");
 }
 
+/// As the macro of POV-Ray's includes that corrects the gamma of pigments makes them.
+TEST(PovScene, FunctionsOfPigments) {
+  const PovFiles files;
+  const std::string text = files.section(
+      "#version 3.7;\n#declare F = function { pigment { gradient x color_map { [0 rgb 0] [1 rgb x] } } }\n"
+      "sphere { 0, 1 pigment { function { pow(F(x,y,z).x, 2) } color_map { [0 rgb 0] [1 rgb y] } } }",
+      "materials");
+  EXPECT_NE(
+      text.find("{function: {f: \"pow(x, 2)\", of: {linear: {direction: [1, 0, 0], map: [[0, [0, 0, 0]], [1, "
+                "[1, 0, 0]]]}}, map: [[0, [0, 0, 0]], [1, [0, 1, 0]]]}}"),
+      std::string::npos)
+      << text;
+}
+
 TEST(PovScene, MeansOfTexturesAndNormals) {
   const PovFiles files;
   const auto material = [&](const std::string& texture) {

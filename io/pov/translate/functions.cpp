@@ -103,8 +103,18 @@ std::string pattern_formula(std::string_view word, const std::array<std::string,
 
 class Writer {
  public:
-  Writer(const Function& function, std::vector<std::string> parameters, Context& context, int depth)
-      : function_(function), parameters_(std::move(parameters)), context_(context), depth_(depth) {}
+  /// What stands for the place where colours are asked for, and for the channels of the colour there.
+  static constexpr const char* kPlace[] = {"@x", "@y", "@z"};
+  static constexpr const char* kChannels[] = {"x", "y", "z"};
+
+  /// `pigment`: gets the one whose colour at the place the function uses; null: there may be none.
+  Writer(const Function& function, std::vector<std::string> parameters, Context& context, int depth,
+         std::shared_ptr<const Block>* pigment = nullptr)
+      : function_(function),
+        parameters_(std::move(parameters)),
+        context_(context),
+        depth_(depth),
+        pigment_(pigment) {}
 
   std::string text() {
     if (function_.nodes.empty()) throw Unwritable{"an empty function"};
@@ -134,7 +144,7 @@ class Writer {
       case Op::user:
         if (node.function == nullptr) throw Unwritable{"an unknown function"};
         operands.resize(std::max(operands.size(), node.function->parameters.size()), "0");
-        return Writer(*node.function, operands, context_, depth_ + 1).text();
+        return Writer(*node.function, operands, context_, depth_ + 1, pigment_).text();
       case Op::spline:
         throw Unwritable{"a spline"};
       case Op::pattern:
@@ -165,8 +175,8 @@ class Writer {
   }
 
   std::string pattern(const FunctionNode& node, const std::vector<std::string>& operands) const {
-    if (node.block == nullptr || node.block->keyword != "pattern" || operands.size() < 3)
-      throw Unwritable{"a pigment"};
+    if (node.block == nullptr || operands.size() < 3) throw Unwritable{"an unknown pattern"};
+    if (node.block->keyword != "pattern") return pigment(node, operands);
     PatternReader reader(context_, [](const Block&) -> Node { return nullptr; });
     Arguments arguments(context_, *node.block);
     PovPattern p;
@@ -185,6 +195,16 @@ class Writer {
     std::string text = pattern_formula(p.word, moved(all.inverse(), operands));
     if (text.empty()) throw Unwritable{name};
     return text;
+  }
+
+  /// A channel of a pigment's colour at the place itself, where that is asked for.
+  std::string pigment(const FunctionNode& node, const std::vector<std::string>& operands) const {
+    const bool is_here = operands[0] == kPlace[0] && operands[1] == kPlace[1] && operands[2] == kPlace[2];
+    if (pigment_ == nullptr || !is_here || node.index > 2 ||
+        (*pigment_ != nullptr && *pigment_ != node.block))
+      throw Unwritable{"a pigment"};
+    *pigment_ = node.block;
+    return kChannels[node.index];
   }
 
   /// The coordinates of the place to which a map takes the place that three operands are.
@@ -246,6 +266,7 @@ class Writer {
   std::vector<std::string> parameters_;
   Context& context_;
   int depth_;
+  std::shared_ptr<const Block>* pigment_;
   std::vector<std::string> texts_;
 };
 
@@ -259,12 +280,25 @@ std::optional<std::string> function_text(Context& context, const Function& funct
     parse_expression(text, std::array<std::string_view, 3>{"x", "y", "z"});
     return text;
   } catch (const Unwritable& reason) {
-    context.tell("function with " + reason.why, where,
-                 "this function contains " + reason.why +
-                     ", which expressions here do not have; it is left out");
+    context.tell(
+        "function with " + reason.why, where,
+        "this function contains " + reason.why + ", which expressions here do not have; it is left out");
   } catch (const std::exception& error) {
     context.warn(where, fmt::format("this function is no expression here: {}; it is left out", error.what()));
   }
+  return std::nullopt;
+}
+
+std::optional<ColorFunction> function_of_pigment(Context& context, const Function& function) {
+  ColorFunction found;
+  try {
+    const auto& place = Writer::kPlace;
+    found.text = Writer(function, {place[0], place[1], place[2]}, context, 0, &found.pigment).text();
+    if (found.pigment == nullptr || found.text.find('@') != std::string::npos) return std::nullopt;
+    parse_expression(found.text, std::array<std::string_view, 3>{"x", "y", "z"});
+    return found;
+  } catch (const Unwritable&) {
+  } catch (const std::exception&) {}
   return std::nullopt;
 }
 

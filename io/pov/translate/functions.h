@@ -1,6 +1,7 @@
 #pragma once
 /// \file Functions as expressions of scene files. Within io/ only.
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,5 +13,13 @@ namespace oktett::pov {
 /// what expressions do not have, or is too long.
 std::optional<std::string> function_text(Context& context, const Function& function, const Place& where,
                                          double threshold = 0);
+
+/// A function of the colour that a pigment has at the place: in x, y and z for its red, green and blue.
+struct ColorFunction {
+  std::string text;
+  std::shared_ptr<const Block> pigment;
+};
+/// Nothing if it is none.
+std::optional<ColorFunction> function_of_pigment(Context& context, const Function& function);
 
 }  // namespace oktett::pov

@@ -159,8 +159,16 @@ bool PatternReader::take_function(Arguments& a, PovPattern& p) {
   if (function == nullptr || *function == nullptr) return false;
   p.word = "function", p.where = a.where(), p.key = "function", p.own = context_.tree.map(p.where);
   p.is_list = false;
+  const std::shared_ptr<const Function> f = *function;
   a.take();
-  if (const auto text = function_text(context_, **function, p.where))
+  if (const std::optional<ColorFunction> of = function_of_pigment(context_, *f)) {
+    if (const Node texture = pigment_texture_(*of->pigment)) {
+      context_.tree.put(p.own, "f", context_.tree.text(p.where, of->text));
+      context_.tree.put(p.own, "of", texture);
+      return true;
+    }
+  }
+  if (const auto text = function_text(context_, *f, p.where))
     context_.tree.put(p.own, "f", context_.tree.text(p.where, *text));
   else
     p.key = "";
