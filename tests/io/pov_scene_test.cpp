@@ -319,13 +319,17 @@ TEST(PovScene, MeansOfTexturesAndNormals) {
   const auto material = [&](const std::string& texture) {
     return files.section("#version 3.7;\nsphere { 0, 1 " + texture + " }", "materials");
   };
-  EXPECT_EQ(material("texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
-                     "x } finish { diffuse 1 }] } }"),
-            "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
-            "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
-  EXPECT_EQ(material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
-            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
-            "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: 0.05}}}}}");
+  EXPECT_EQ(
+      material(
+          "texture { average texture_map { [1 pigment { rgb 1 } finish { diffuse 0.5 }] [1 pigment { rgb "
+          "x } finish { diffuse 1 }] } }"),
+      "{material: {color: {over: {color: [0.5, 0, 0], filter: 1, under: [0.5, 0.5, 0.5]}}, ambient: 0.1, "
+      "diffuse: {over: {color: 0.5, filter: 1, under: 0.25}}}}");
+  EXPECT_EQ(
+      material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
+      "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
+      "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: "
+      "0.05}}}}}");
 }
 
 TEST(PovScene, SkiesArePatternsOfDirections) {
@@ -507,7 +511,7 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
   const std::string torn = "isosurface { function { F(x, y, z) } contained_by { box { -1, 1 } } } ";
   EXPECT_EQ(files.warnings("#version 3.7;\n#declare F = function { internal(6) } " + torn + torn),
             "scene.pov:2:39: warning: this function contains a function of functions.inc that has no formula "
-            "here (F), which expressions here do not have; it is left out\n");
+            "here (internal(6)), which expressions here do not have; it is left out\n");
 }
 
 TEST(PovScene, NoiseInFunctions) {
@@ -544,9 +548,7 @@ TEST(PovScene, NoiseInFunctions) {
     const auto& shape = std::get<ImplicitShape>(std::get<ExactShape>(scene.objects[i].shape).form);
     return value_at(shape.function, 0.3, 0.4, 0.7);
   };
-  const auto center = [&](std::size_t i) {
-    return std::get<SpheresShape>(scene.objects[i].shape).spheres[0].center;
-  };
+  const auto center = [&](std::size_t i) { return std::get<SphereShape>(scene.objects[i].shape).center; };
   EXPECT_NEAR(value(0), center(3).x, 1e-6);
   EXPECT_NEAR(value(1), center(3).y, 1e-6);
   EXPECT_NEAR(value(2), center(3).z, 1e-6);
@@ -561,6 +563,12 @@ TEST(PovScene, HeightsOfPalettesAreNumbers) {
   EXPECT_NE(
       files.object("#version 3.7;\nheight_field { png \"a.png\" }").find("a.png\", palette: true, size: "),
       std::string::npos);
+  // With sides and a bottom only where it is cut.
+  const std::string base = ", base: -0.0001}";
+  EXPECT_EQ(files.object("#version 3.7;\nheight_field { png \"a.png\" }").find(base), std::string::npos);
+  EXPECT_NE(files.object("#version 3.7;\nintersection { height_field { png \"a.png\" } sphere { 0, 1 } }")
+                .find(base),
+            std::string::npos);
 }
 
 TEST(PovScene, WhatIsAskedStandsWhereItWasFound) {
