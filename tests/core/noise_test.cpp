@@ -54,7 +54,8 @@ TEST(Noise, EnclosuresHoldSamples) {
   for (int i = 0; i < 900; ++i) {
     const double size = i % 3 == 0 ? 1.5 : i % 3 == 1 ? 0.25 : 0x1p-10;
     Vec3d lo, hi;
-    for (int k = 0; k < 3; ++k) lo[k] = coordinate(random), hi[k] = lo[k] + (random() % 8 ? size * unit(random) : 0);
+    for (int k = 0; k < 3; ++k)
+      lo[k] = coordinate(random), hi[k] = lo[k] + (random() % 8 ? size * unit(random) : 0);
     const NoiseRange r = noise_range(lo, hi);
     long double least = 2, most = -2;
     constexpr int kSide = 6;
@@ -116,12 +117,11 @@ void weights(int side, double lo, double hi, Span (&w)[3]) {
   };
   const double at = std::sqrt(3.0) / 6;
   w[0] = over(fade, {}), w[1] = over(slope, {0.5}), w[2] = over(bend, {0.5 - at, 0.5 + at});
-  if (side == 0)
-    w[0] = {1 - w[0].hi, 1 - w[0].lo}, w[1] = {-w[1].hi, -w[1].lo}, w[2] = {-w[2].hi, -w[2].lo};
+  if (side == 0) w[0] = {1 - w[0].hi, 1 - w[0].lo}, w[1] = {-w[1].hi, -w[1].lo}, w[2] = {-w[2].hi, -w[2].lo};
 }
 
-/// Bounds on the noise and its derivatives in a box of a cell, for the worst of all vectors: of those of a corner
-/// the product's two greatest components count.
+/// Bounds on the noise and its derivatives in a box of a cell, for the worst of all vectors: of those of a
+/// corner the product's two greatest components count.
 void bound(const Vec3d& lo, const Vec3d& hi, double (&sum)[4]) {
   std::fill(sum, sum + 4, 0.0);
   const Span none{0, 0}, two{2, 2};

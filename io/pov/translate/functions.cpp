@@ -259,9 +259,9 @@ std::optional<std::string> function_text(Context& context, const Function& funct
     parse_expression(text, std::array<std::string_view, 3>{"x", "y", "z"});
     return text;
   } catch (const Unwritable& reason) {
-    context.tell("function with " + reason.why, where,
-                 "this function contains " + reason.why +
-                     ", which expressions here do not have; it is left out");
+    context.tell(
+        "function with " + reason.why, where,
+        "this function contains " + reason.why + ", which expressions here do not have; it is left out");
   } catch (const std::exception& error) {
     context.warn(where, fmt::format("this function is no expression here: {}; it is left out", error.what()));
   }
