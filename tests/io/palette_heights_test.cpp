@@ -77,7 +77,7 @@ TEST(PaletteHeights, ErrorsHaveTheirPlace) {
                       test::png_chunk("IEND", "")),
                 at + "cannot read the image: ");
   expect_starts(error("", "objects: [{height_field: {function: x, palette: true}}]"),
-                "scene.yaml:2:40: a height field from a function has no 'palette'");
+                "scene.yaml:2:49: a height field from a function has no 'palette'");
   expect_starts(error(good.file(), "objects: [{height_field: {file: b.png, palette: true}}]"),
                 "scene.yaml:2:33: 'b.png': no such file");
   expect_starts(error(good.file(), "objects: [{height_field: {file: a.png, palette: 3}}]"),

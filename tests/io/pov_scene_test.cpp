@@ -525,7 +525,7 @@ TEST(PovScene, FunctionsOfFunctionsIncAreFormulas) {
   const std::string torn = "isosurface { function { F(x, y, z) } contained_by { box { -1, 1 } } } ";
   EXPECT_EQ(files.warnings("#version 3.7;\n#declare F = function { internal(6) } " + torn + torn),
             "scene.pov:2:39: warning: this function contains a function of functions.inc that has no formula "
-            "here (F), which expressions here do not have; it is left out\n");
+            "here (internal(6)), which expressions here do not have; it is left out\n");
 }
 
 TEST(PovScene, NoiseInFunctions) {
@@ -562,9 +562,7 @@ TEST(PovScene, NoiseInFunctions) {
     const auto& shape = std::get<ImplicitShape>(std::get<ExactShape>(scene.objects[i].shape).form);
     return value_at(shape.function, 0.3, 0.4, 0.7);
   };
-  const auto center = [&](std::size_t i) {
-    return std::get<SpheresShape>(scene.objects[i].shape).spheres[0].center;
-  };
+  const auto center = [&](std::size_t i) { return std::get<SphereShape>(scene.objects[i].shape).center; };
   EXPECT_NEAR(value(0), center(3).x, 1e-6);
   EXPECT_NEAR(value(1), center(3).y, 1e-6);
   EXPECT_NEAR(value(2), center(3).z, 1e-6);
@@ -579,6 +577,12 @@ TEST(PovScene, HeightsOfPalettesAreNumbers) {
   EXPECT_NE(
       files.object("#version 3.7;\nheight_field { png \"a.png\" }").find("a.png\", palette: true, size: "),
       std::string::npos);
+  // With sides and a bottom only where it is cut.
+  const std::string base = ", base: -0.0001}";
+  EXPECT_EQ(files.object("#version 3.7;\nheight_field { png \"a.png\" }").find(base), std::string::npos);
+  EXPECT_NE(files.object("#version 3.7;\nintersection { height_field { png \"a.png\" } sphere { 0, 1 } }")
+                .find(base),
+            std::string::npos);
 }
 
 TEST(PovScene, WhatIsAskedStandsWhereItWasFound) {

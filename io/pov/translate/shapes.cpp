@@ -562,8 +562,11 @@ class ShapeMaker {
     if (palette) tree_.put(keys, "palette", tree_.word(where_, "true"));
     tree_.put(keys, "size", vector({1, 1, 1}));
     tree_.put(keys, "interpolation", tree_.word(where_, "triangles"));
-    tree_.put(keys, "base", number(-1e-4));
+    // Only what is cut or combined needs sides and a bottom, which POV-Ray does not show.
+    const bool solid = operand_ || water > 0;
+    if (solid) tree_.put(keys, "base", number(-1e-4));
     Shapes shapes = one("height_field", keys);
+    shapes.solid = solid;
     // The upper edge of the image lies at z = 1, not at the least z.
     shapes.parts[0].first.add({Move::Kind::scale, {1, 1, -1}, {}, where_});
     shapes.parts[0].first.add({Move::Kind::translate, {0.5, 0, 0.5}, {}, where_});
