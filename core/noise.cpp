@@ -109,33 +109,33 @@ NoiseSlope noise_slope(const Vec3d& p) {
 namespace {
 
 /// Computed without rounding outwards: noise_range widens what it returns by all errors.
-struct Range {
+struct Stretch {
   double lo, hi;
 };
 
-Range operator+(const Range& a, const Range& b) { return {a.lo + b.lo, a.hi + b.hi}; }
+Stretch operator+(const Stretch& a, const Stretch& b) { return {a.lo + b.lo, a.hi + b.hi}; }
 /// By a range of numbers that are not negative.
-Range scaled(const Range& a, const Range& by) {
+Stretch scaled(const Stretch& a, const Stretch& by) {
   return {a.lo * (a.lo < 0 ? by.hi : by.lo), a.hi * (a.hi < 0 ? by.lo : by.hi)};
 }
 /// Of all means: `t` is in [0, 1], and a mean rises with what it is a mean of.
-Range mix(const Range& a, const Range& b, const Range& t) {
+Stretch mix(const Stretch& a, const Stretch& b, const Stretch& t) {
   const double lo[2] = {mix(a.lo, b.lo, t.lo), mix(a.lo, b.lo, t.hi)};
   const double hi[2] = {mix(a.hi, b.hi, t.lo), mix(a.hi, b.hi, t.hi)};
   return {std::min(lo[0], lo[1]), std::max(hi[0], hi[1])};
 }
 /// Of the scalar product of `g` with the points of a box.
-Range product(const Vec3d& g, const Vec3d& lo, const Vec3d& hi) {
-  Range r{0, 0};
+Stretch product(const Vec3d& g, const Vec3d& lo, const Vec3d& hi) {
+  Stretch r{0, 0};
   for (int k = 0; k < 3; ++k)
-    r = r + Range{g[k] * (g[k] < 0 ? hi[k] : lo[k]), g[k] * (g[k] < 0 ? lo[k] : hi[k])};
+    r = r + Stretch{g[k] * (g[k] < 0 ? hi[k] : lo[k]), g[k] * (g[k] < 0 ? lo[k] : hi[k])};
   return r;
 }
 
 /// Of a box in one cell: of the value, and of the three derivatives.
-void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d& hi, Range (&out)[4]) {
+void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d& hi, Stretch (&out)[4]) {
   Vec3d vectors[8];
-  Range corner[8], t[3];
+  Stretch corner[8], t[3];
   for (int i = 0; i < 8; ++i) {
     const Vec3d at = corner_place(i);
     vectors[i] = edge_vector(bits[i]);
@@ -146,12 +146,12 @@ void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d&
   for (int k = 0; k < 3; ++k) {
     // It rises up to 1/2 and falls from there.
     const double a = fade_slope(lo[k]), b = fade_slope(hi[k]);
-    const Range steep{std::min(a, b), lo[k] <= 0.5 && 0.5 <= hi[k] ? 1.875 : std::max(a, b)};
+    const Stretch steep{std::min(a, b), lo[k] <= 0.5 && 0.5 <= hi[k] ? 1.875 : std::max(a, b)};
     out[1 + k] = between_edges(k, t, [&](int i, int j) {
       // The difference of two products is one with the difference of the vectors, but for a constant.
       const double apart = dot(vectors[i], corner_place(i)) - dot(vectors[j], corner_place(j));
-      const Range rise = product(vectors[j] - vectors[i], lo, hi) + Range{apart, apart};
-      const Range from{vectors[i][k], vectors[i][k]}, to{vectors[j][k], vectors[j][k]};
+      const Stretch rise = product(vectors[j] - vectors[i], lo, hi) + Stretch{apart, apart};
+      const Stretch from{vectors[i][k], vectors[i][k]}, to{vectors[j][k], vectors[j][k]};
       return scaled(rise, steep) + mix(from, to, t[k]);
     });
   }
@@ -173,7 +173,7 @@ NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
     cells *= static_cast<double>(last[k] - first[k] + 1);
   }
   if (cells > kMostCells) return all;
-  Range whole[4];
+  Stretch whole[4];
   bool is_first = true;
   for (std::int64_t z = first[2]; z <= last[2]; ++z)
     for (std::int64_t y = first[1]; y <= last[1]; ++y)
@@ -184,11 +184,11 @@ NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
         Vec3d from, to;
         for (int k = 0; k < 3; ++k)
           from[k] = std::clamp(lo[k] - corner[k], 0.0, 1.0), to[k] = std::clamp(hi[k] - corner[k], 0.0, 1.0);
-        Range part[4];
+        Stretch part[4];
         range_in_cell(bits, from, to, part);
         for (int i = 0; i < 4; ++i)
           whole[i] = is_first ? part[i]
-                              : Range{std::min(whole[i].lo, part[i].lo), std::max(whole[i].hi, part[i].hi)};
+                              : Stretch{std::min(whole[i].lo, part[i].lo), std::max(whole[i].hi, part[i].hi)};
         is_first = false;
       }
   NoiseRange range;
