@@ -81,7 +81,7 @@ struct FunctionTape {
 
 /// Compiles a text: numbers, + - * / ^, parentheses, the variables x, y and z, the constants pi and e, and
 /// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
-/// sign hypot (angles in radians) and noise(a, b, c), gradient_noise of core/noise.h. Constants are rounded
+/// sign hypot (angles in radians) and noise(a, b, c), the gradient noise of patterns. Constants are rounded
 /// to double. a^b, where b is no constant, is exp(b log a); it and powers with an exponent that is not whole,
 /// or greater than kMaxTapePower, are defined for a >= 0 only.
 ///
