@@ -328,6 +328,18 @@ TEST(PovScene, FunctionsOfPigments) {
       << text;
 }
 
+/// One colour, where a texture is needed, leaves the function out.
+TEST(PovScene, FunctionsOfPigmentsThatAreNotRead) {
+  const PovFiles files;
+  const std::string scene =
+      "#version 3.7;\n#declare S = function { spline { linear_spline 0, <0, 0, 0> 1, <1, 1, 1> } }\n"
+      "#declare F = function { pigment { function { S(x).y } } }\n"
+      "sphere { 0, 1 pigment { function { F(x,y,z).x } } }";
+  EXPECT_EQ(files.error(scene), "no error");
+  EXPECT_EQ(files.section(scene, "materials"),
+            "{material: {color: [0.5, 0.5, 0.5], ambient: 0.1, diffuse: 0.6}}");
+}
+
 TEST(PovScene, MeansOfTexturesAndNormals) {
   const PovFiles files;
   const auto material = [&](const std::string& texture) {

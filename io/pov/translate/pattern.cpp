@@ -59,6 +59,17 @@ constexpr PatternName kNames[] = {
 };
 constexpr std::array<std::string_view, 7> kLists{"brick",  "checker",    "cubic", "hexagon",
                                                  "square", "triangular", "object"};
+/// The file of an image, whose name may lack its ending.
+std::string find_image(const Context& context, const Place& where, const std::string& name) {
+  for (const char* ending :
+       {"", ".png", ".jpg", ".jpeg", ".gif", ".tga", ".ppm", ".pgm", ".tif", ".tiff", ".exr"}) {
+    try {
+      return find_file(context, where, name + ending);
+    } catch (const Error&) {}
+  }
+  return find_file(context, where, name);
+}
+
 /// What stands before one value that changes nothing here.
 constexpr std::array<std::string_view, 5> kIgnored{"noise_generator", "quick_color", "quick_colour",
                                                    "interpolate", "accuracy"};
@@ -124,6 +135,11 @@ bool PatternReader::take(Arguments& a, PovPattern& p) {
   return take_block(a, p) || take_function(a, p) || take_pattern(a, p) || take_modifier(a, p);
 }
 
+Node PatternReader::texture_of(const Block& pigment) {
+  const Node node = pigment_texture_(pigment);
+  return node != nullptr && node->kind == YamlKind::map ? node : nullptr;
+}
+
 bool PatternReader::take_block(Arguments& a, PovPattern& p) {
   const Block* const block = a.peek_block();
   if (block == nullptr) return false;
@@ -144,7 +160,7 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
     take_image(*block, image);
     if (!image.key.empty()) of = pattern_node(context_, image, nullptr);
   } else {
-    of = pigment_texture_(*block);
+    of = texture_of(*block);
   }
   if (of != nullptr)
     context_.tree.put(p.own, "of", of);
@@ -162,7 +178,7 @@ bool PatternReader::take_function(Arguments& a, PovPattern& p) {
   const std::shared_ptr<const Function> f = *function;
   a.take();
   if (const std::optional<ColorFunction> of = function_of_pigment(context_, *f)) {
-    if (const Node texture = pigment_texture_(*of->pigment)) {
+    if (const Node texture = texture_of(*of->pigment)) {
       context_.tree.put(p.own, "f", context_.tree.text(p.where, of->text));
       context_.tree.put(p.own, "of", texture);
       return true;
@@ -383,7 +399,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
     const Place where = a.where();
     const Element& element = a.take();
     if (const auto* const path = std::get_if<std::string>(&element.value)) {
-      const Node image = tree.map(where, "file", tree.text(where, find_file(context_, where, *path)));
+      const Node image = tree.map(where, "file", tree.text(where, find_image(context_, where, *path)));
       // Its numbers are those of the scene's gamma then.
       if (context_.gamma > 1.6) tree.put(image, "color_space", tree.word(where, "linear"));
       set(p.own, "of", image);

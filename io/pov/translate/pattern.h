@@ -49,6 +49,8 @@ class PatternReader {
   void take_image(const Block& block, PovPattern& pattern);
 
  private:
+  /// Null also where one colour stands for the pigment.
+  Node texture_of(const Block& pigment);
   bool take_pattern(Arguments& a, PovPattern& p);
   bool take_function(Arguments& a, PovPattern& p);
   bool take_block(Arguments& a, PovPattern& p);
