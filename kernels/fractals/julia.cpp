@@ -46,7 +46,7 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
     return;
   if (s.power != 2 && s.power != 3) return;
   const double radius = 0.5 * (1 + std::sqrt(1 + 4 * size));
-  // Not so for a NaN.
+  // A radius that is too small, too great or no number leaves that of the formula.
   const double escape = s.escape > radius && s.escape <= JuliaShape::kMostEscape ? s.escape : radius;
   const JuliaElement e{{s.c[0], s.c[1], s.c[2], s.c[3]},
                        s.slice,

@@ -3,6 +3,7 @@
 
 #include "io/pov/read_pov.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/pov_options.h"
 
 namespace {
 
@@ -32,15 +33,8 @@ class Answers final : public pov::ObjectQueries {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return test::fuzz_reader("scene.pov", data, size, [](const std::string& path) {
     Answers answers;
-    pov::ReadOptions options;
-    options.library_folders.clear();
+    pov::ReadOptions options = test::small_pov_options();
     options.queries = &answers;
-    options.limits.steps = 20'000;
-    options.limits.values = 100'000;
-    options.limits.array_elements = 10'000;
-    options.limits.string_length = 10'000;
-    options.limits.macro_depth = 200;
-    options.limits.nesting = 100;
     const pov::Document document = pov::read_pov(path, options);
     for (const pov::Element& statement : document.statements)
       test::require(document.location(statement.where).line > 0, "a statement has a place");

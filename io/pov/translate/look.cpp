@@ -71,20 +71,20 @@ class MaterialWriter {
     const bool transparent = is_transparent(look);
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
     tree_.put(map, "color", color(look));
-    put(map, "ambient", weight(look, ambient_of), "");
+    tree_.put(map, "ambient", weight(look, ambient_of));
     if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
-    put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }), "");
+    tree_.put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }));
     put_highlight(map, look);
     put_reflection(map, look, interior);
     if (transparent) {
       if (is_solid_glass)
         put_solid_glass(map, look.pigment.solid);
       else
-        put(map, "transparency", tree_.number(where_, 1), ""), tree_.put(map, "filter", filter(look));
+        tree_.put(map, "transparency", tree_.number(where_, 1)), tree_.put(map, "filter", filter(look));
       double ior = interior.ior;
       for_each_plain(look, [&](const Look& l) { ior = l.finish.ior.value_or(ior); });
-      put(map, "ior", tree_.number(where_, ior > 0 ? ior : 1), "");
+      tree_.put(map, "ior", tree_.number(where_, ior > 0 ? ior : 1));
     }
     if (const Node bump = heights(look)) tree_.put(map, "map_bump", bump);
     return map;
@@ -115,26 +115,21 @@ class MaterialWriter {
     return found;
   }
 
-  /// Unless it is the `usual` value.
-  void put(Node map, std::string_view key, Node value, std::string_view usual) {
-    if (value->text != usual || value->kind != YamlKind::scalar) tree_.put(map, key, value);
+  /// Unless it is 0, as it is where nothing is said.
+  void put_unless_zero(Node map, std::string_view key, Node value) {
+    if (value->text != "0" || value->kind != YamlKind::scalar) tree_.put(map, key, value);
   }
 
   // ---- Values of a look that may be in a pattern.
 
   /// `of` for a plain look; a texture of these in the pattern of a look if they differ.
-  Node in_pattern(const Look& look, const PlainNode& of, const std::function<Node(const Look&)>& of_layers) {
+  Node in_pattern(const Look& look, const PlainNode& of, const PlainNode& of_layers) {
     if (look.is_plain()) return of(look);
     if (!look.layers.empty()) return of_layers(look);
     const PovPattern& pattern = look.pattern;
     std::vector<Node> values;
-    bool differ = false;
-    for (const TextureEntry& entry : look.entries) {
-      values.push_back(in_pattern(entry.look, of, of_layers));
-      differ = differ || values.back()->kind == YamlKind::map ||
-               flow_text(*values.back()) != flow_text(*values[0]);
-    }
-    if (!differ) return values[0];
+    for (const TextureEntry& entry : look.entries) values.push_back(in_pattern(entry.look, of, of_layers));
+    if (const Node only = only_value(values)) return only;
     if (pattern.word == "average") {
       std::vector<WeightedNode> all;
       for (std::size_t i = 0; i < values.size(); ++i) all.push_back({look.entries[i].at, values[i]});
@@ -152,11 +147,8 @@ class MaterialWriter {
         Tree::push(list, values[i]);
         continue;
       }
-      const Node item = tree_.list(where_);
       before = std::clamp(look.entries[i].at, before, 1.0);
-      Tree::push(item, tree_.number(where_, before));
-      Tree::push(item, values[i]);
-      Tree::push(list, item);
+      push_entry(tree_, where_, list, before, values[i]);
     }
     return pattern_node(context_, pattern, list);
   }
@@ -258,20 +250,14 @@ class MaterialWriter {
       context_.tell("phong and specular", where_,
                     "of 'phong' and 'specular' in one finish the stronger is shown");
     if (!any(look, [](const Finish& f) { return f.phong > 0 || f.specular > 0; })) return;
-    put(map, "specular",
-        number(look,
-               [](const Look& l) {
-                 return std::max({0.0, l.finish.phong, l.finish.specular});
-               }),
-        "0");
-    put(map, "phong",
-        number(look,
-               [](const Look& l) {
-                 const Finish& f = l.finish;
-                 return f.phong >= f.specular ? std::max(0.0, f.phong_size)
-                                              : 1 / (4 * std::max(f.roughness, 1e-6));
-               }),
-        "");
+    put_unless_zero(map, "specular", number(look, [](const Look& l) {
+                      return std::max({0.0, l.finish.phong, l.finish.specular});
+                    }));
+    tree_.put(map, "phong", number(look, [](const Look& l) {
+                const Finish& f = l.finish;
+                return f.phong >= f.specular ? std::max(0.0, f.phong_size)
+                                             : 1 / (4 * std::max(f.roughness, 1e-6));
+              }));
     if (any(look, [](const Finish& f) { return max_component(f.reflection_max) > 0; })) return;
     if (any(look, [](const Finish& f) { return f.metallic > 0; }))
       tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
@@ -296,9 +282,9 @@ class MaterialWriter {
     for_each_plain(look,
                    [&](const Look& l) { some = some || max_component(reflection_of(l, interior)) > 0; });
     if (!some) return;
-    put(map, "reflection",
-        number(look, [&](const Look& l) { return std::min(max_component(reflection_of(l, interior)), 1.0); }),
-        "0");
+    put_unless_zero(map, "reflection", number(look, [&](const Look& l) {
+                      return std::min(max_component(reflection_of(l, interior)), 1.0);
+                    }));
     const auto hue = [&](const Look& l, const Vec3d& rgb) {
       const Finish& f = l.finish;
       const Vec3d r = reflection_of(l, interior);

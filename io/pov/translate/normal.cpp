@@ -31,7 +31,8 @@ double strength_of(std::string_view word) {
 class NormalReader {
  public:
   explicit NormalReader(Context& context)
-      : context_(context), patterns_(context, [this](const Block& block) { return brightness_of(block); }) {}
+      : context_(context),
+        patterns_(context, [this](const Block& block) { return pigment_texture(context_, block); }) {}
 
   void read(const Block& block, Normal& n) {
     Arguments a(context_, block);
@@ -112,13 +113,6 @@ class NormalReader {
     }
   }
 
-  Node brightness_of(const Block& block) {
-    Pigment p;
-    read_pigment(context_, block, p);
-    return is_solid(p) ? nullptr
-                       : pigment_node(context_, block.where, p, {[](const PovColor& c) { return c.rgb; }});
-  }
-
   Context& context_;
   PatternReader patterns_;
   int depth_ = 0;
@@ -144,10 +138,7 @@ Node slopes_node(Context& context, const Normal& n) {
   const Place& where = n.pattern.where;
   const Node values = tree.list(where);
   const auto add = [&](double at) {
-    const Node item = tree.list(where);
-    Tree::push(item, tree.number(where, at));
-    Tree::push(item, tree.number(where, std::max(0.0, height_at(n.slopes, at))));
-    Tree::push(values, item);
+    push_entry(tree, where, values, at, tree.number(where, std::max(0.0, height_at(n.slopes, at))));
   };
   constexpr int kSteps = 64;
   std::vector<double> places;
@@ -190,14 +181,10 @@ Node normal_node(Context& context, const Normal& n) {
     const Node values = tree.list(p.where);
     for (const NormalEntry& entry : n.normals) {
       const Node inner = nested_node(context, p.where, *entry.normal);
-      if (p.is_list) {
+      if (p.is_list)
         Tree::push(values, inner);
-        continue;
-      }
-      const Node item = tree.list(p.where);
-      Tree::push(item, tree.number(p.where, std::clamp(entry.at, 0.0, 1.0)));
-      Tree::push(item, inner);
-      Tree::push(values, item);
+      else
+        push_entry(tree, p.where, values, std::clamp(entry.at, 0.0, 1.0), inner);
     }
     return pattern_node(context, p, values);
   }

@@ -59,17 +59,6 @@ constexpr PatternName kNames[] = {
 };
 constexpr std::array<std::string_view, 7> kLists{"brick",  "checker",    "cubic", "hexagon",
                                                  "square", "triangular", "object"};
-/// The file of an image, whose name may lack its ending.
-std::string find_image(const Context& context, const Place& where, const std::string& name) {
-  for (const char* ending :
-       {"", ".png", ".jpg", ".jpeg", ".gif", ".tga", ".ppm", ".pgm", ".tif", ".tiff", ".exr"}) {
-    try {
-      return find_file(context, where, name + ending);
-    } catch (const Error&) {}
-  }
-  return find_file(context, where, name);
-}
-
 /// What stands before one value that changes nothing here.
 constexpr std::array<std::string_view, 5> kIgnored{"noise_generator", "quick_color", "quick_colour",
                                                    "interpolate", "accuracy"};
@@ -81,6 +70,17 @@ constexpr std::array<std::string_view, 4> kMappings{"planar", "cylindrical", "sp
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
   return std::ranges::find(words, word) != words.end();
+}
+
+/// The file of an image, whose name may lack its ending.
+std::string find_image(const Context& context, const Place& where, const std::string& name) {
+  for (const char* ending :
+       {"", ".png", ".jpg", ".jpeg", ".gif", ".tga", ".ppm", ".pgm", ".tif", ".tiff", ".exr"}) {
+    try {
+      return find_file(context, where, name + ending);
+    } catch (const Error&) {}
+  }
+  return find_file(context, where, name);
 }
 
 /// The value of `turbulence`.
@@ -419,6 +419,13 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
 }
 
 // ---- Writing.
+
+void push_entry(Tree& tree, const Place& where, Node map, double at, Node value) {
+  const Node item = tree.list(where);
+  Tree::push(item, tree.number(where, at));
+  Tree::push(item, value);
+  Tree::push(map, item);
+}
 
 double scale_of(const PovPattern& pattern) {
   double volume = 1;

@@ -66,6 +66,9 @@ class PatternReader {
   PigmentTexture pigment_texture_;
 };
 
+/// Adds an entry [at, value] to the `map` of a pattern.
+void push_entry(Tree& tree, const Place& where, Node map, double at, Node value);
+
 /// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
 /// its values are numbers.
 Node pattern_node(Context& context, const PovPattern& pattern, Node values);

@@ -82,6 +82,12 @@ std::vector<PigmentEntry> default_map(std::string_view pattern) {
   return map;
 }
 
+/// Null if it has one colour.
+Node colors_of(Context& context, const Place& where, const Pigment& p) {
+  if (is_solid(p)) return nullptr;
+  return pigment_node(context, where, p, {[](const PovColor& c) { return c.rgb; }});
+}
+
 /// Reads pigments.
 class PigmentReader {
  public:
@@ -236,8 +242,7 @@ class PigmentReader {
     ++depth_;
     read(block, p);
     --depth_;
-    if (is_solid(p) || depth_ >= kMostNested) return nullptr;
-    return pigment_node(context_, block.where, p, {[](const PovColor& c) { return c.rgb; }});
+    return depth_ < kMostNested ? colors_of(context_, block.where, p) : nullptr;
   }
 
   Context& context_;
@@ -251,13 +256,6 @@ Node part_node(Tree& tree, const Place& where, const ColorPart& part, const Vec3
   if (part.is_number)
     return tree.word(where, fmt::format("{}", static_cast<float>(std::max(0.0, value.x)) + 0.0f));
   return color_node(tree, where, value);
-}
-
-/// The only value of several nodes that are no textures; null if there are others.
-Node only_value(const std::vector<Node>& nodes) {
-  for (const Node node : nodes)
-    if (node->kind == YamlKind::map || flow_text(*node) != flow_text(*nodes[0])) return nullptr;
-  return nodes.empty() ? nullptr : nodes[0];
 }
 
 /// What an entry of a map shows.
@@ -332,7 +330,7 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   const Node node = pattern_node(context, p.pattern, nullptr);
   if (gain == 1 && base == 0) return node;
   Tree& tree = context.tree;
-  // The image itself may stand in several places, but not with what belongs to this one.
+  // Other places may show the same node, so gain and base stand in a copy.
   const Node copy = tree.map(p.pattern.where);
   copy->items = node->items;
   tree.put(copy, "gain", tree.number(p.pattern.where, gain));
@@ -367,6 +365,18 @@ void read_pigment(Context& context, const Block& block, Pigment& pigment) {
 
 void read_pigment(Context& context, Arguments& arguments, Pigment& pigment) {
   PigmentReader(context).read(arguments, pigment);
+}
+
+Node pigment_texture(Context& context, const Block& block) {
+  Pigment p;
+  read_pigment(context, block, p);
+  return colors_of(context, block.where, p);
+}
+
+Node only_value(const std::vector<Node>& values) {
+  for (const Node node : values)
+    if (node->kind == YamlKind::map || flow_text(*node) != flow_text(*values[0])) return nullptr;
+  return values.empty() ? nullptr : values[0];
 }
 
 bool is_solid(const Pigment& p) { return p.pattern.is_none(); }
@@ -427,12 +437,7 @@ Node pigment_node(Context& context, const Place& where, const Pigment& p, const 
   std::vector<Node> shown;
   for (const PigmentEntry& entry : map) shown.push_back(entry_node(context, where, entry, part));
   if (const Node only = only_value(shown)) return only;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const Node item = tree.list(where);
-    Tree::push(item, tree.number(where, map[i].at));
-    Tree::push(item, shown[i]);
-    Tree::push(values, item);
-  }
+  for (std::size_t i = 0; i < map.size(); ++i) push_entry(tree, where, values, map[i].at, shown[i]);
   return pattern_node(context, pattern, values);
 }
 

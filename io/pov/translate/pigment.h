@@ -61,6 +61,12 @@ struct WeightedNode {
 /// The weighted mean of colours, numbers and textures, as textures over each other. Null if nothing counts.
 Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& nodes);
 
+/// The colours of a block `pigment` as a texture or a colour; null if it has one colour.
+Node pigment_texture(Context& context, const Block& block);
+
+/// The only value of several that are no textures; null if there are others.
+Node only_value(const std::vector<Node>& values);
+
 /// A colour as a value of scene files.
 Node color_node(Tree& tree, const Place& where, const Vec3d& rgb);
 

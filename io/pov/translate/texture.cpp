@@ -21,7 +21,8 @@ namespace {
 class TextureReader {
  public:
   explicit TextureReader(Context& context)
-      : context_(context), patterns_(context, [this](const Block& block) { return brightness_of(block); }) {}
+      : context_(context),
+        patterns_(context, [this](const Block& block) { return pigment_texture(context_, block); }) {}
 
   void read(const Block& block, Look& look) {
     if (block.keyword == "pigment") return read_part(block, look);
@@ -147,13 +148,6 @@ class TextureReader {
       read(rest, entry.look);
       entries.push_back(std::move(entry));
     }
-  }
-
-  Node brightness_of(const Block& block) {
-    Pigment p;
-    read_pigment(context_, block, p);
-    return is_solid(p) ? nullptr
-                       : pigment_node(context_, block.where, p, {[](const PovColor& c) { return c.rgb; }});
   }
 
   Context& context_;
