@@ -148,8 +148,8 @@ void add_element(SchemaMap& map) {
 }
 
 bool all_metaballs(const std::vector<FieldElement>& elements) {
-  return std::all_of(elements.begin(), elements.end(), [](const FieldElement& e) {
-    return std::holds_alternative<PointSkeleton>(e.skeleton) && e.potential.kind == PotentialKind::wyvill;
+  return std::none_of(elements.begin(), elements.end(), [](const FieldElement& e) {
+    return std::holds_alternative<PolygonSkeleton>(e.skeleton) || e.potential.kind != PotentialKind::wyvill;
   });
 }
 
@@ -181,8 +181,10 @@ MaybeForm read_elements(const ShapeNode& at, const YamlNode& list, double iso) {
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
     for (const FieldElement& e : tree.elements)
-      shape.balls.push_back(
-          {std::get<PointSkeleton>(e.skeleton).center, e.potential.scale, e.potential.weight});
+      if (const auto* const point = std::get_if<PointSkeleton>(&e.skeleton))
+        shape.balls.push_back({point->center, e.potential.scale, e.potential.weight});
+      else
+        shape.elements.push_back(e);
     return shape;
   }
   for (std::uint32_t i = 0; i < tree.elements.size(); ++i) tree.blends.push_back({Blend::Op::element, i, 0});

@@ -184,6 +184,10 @@ void add_by_hand(Writer& writer, const HeightFieldShape& shape, SideFiles& files
   writer.add("file", '"' + files.heights(*shape.grid) + '"');
 }
 template <class Writer>
+void add_by_hand(Writer& writer, const MetaballsShape& shape, SideFiles&) {
+  if (!shape.elements.empty()) writer.add("elements", list_text(shape.elements, element_text));
+}
+template <class Writer>
 void add_by_hand(Writer& writer, const BlobTreeShape& shape, SideFiles&) {
   const auto [key, list] = blend_text(shape);
   writer.add(key, list);
@@ -207,6 +211,16 @@ struct KeyFinder {
   }
 };
 
+/// With all balls among the elements if there are any, since a file has one list.
+MetaballsShape as_one_list(MetaballsShape shape) {
+  if (shape.elements.empty()) return shape;
+  std::vector<FieldElement> all;
+  for (const MetaBall& b : shape.balls)
+    all.push_back({PointSkeleton{b.center}, {PotentialKind::wyvill, b.radius, 1, b.strength}});
+  all.insert(all.end(), shape.elements.begin(), shape.elements.end());
+  return {shape.iso, {}, std::move(all)};
+}
+
 template <class T>
 std::string form_text(const T& form, SideFiles& files, NormalMethod normals) {
   using Kind = TurnedProfile::Kind;
@@ -224,6 +238,8 @@ std::string form_text(const T& form, SideFiles& files, NormalMethod normals) {
     KeyFinder finder{form};
     SuperquadricShape::surfaces(finder);
     return described_text(finder.key, form, files, normals);
+  } else if constexpr (std::is_same_v<T, MetaballsShape>) {
+    return described_text("metaballs", as_one_list(form), files, normals);
   } else {
     return described_text(T::kShapeInfo.key, form, files, normals);
   }

@@ -6,6 +6,7 @@
 
 #include "core/description.h"
 #include "core/vec3.h"
+#include "kernels/fields/field_data.h"
 
 namespace oktett {
 
@@ -33,6 +34,8 @@ struct MetaBall {
 struct MetaballsShape {
   double iso = 0.5;
   std::vector<MetaBall> balls;
+  /// Points, segments and ellipsoids, with the potential `wyvill`, which is that of the balls.
+  std::vector<FieldElement> elements{};
 
   static constexpr ShapeInfo kShapeInfo{
       "metaballs", "where the sum of the potentials of one of `balls`, `file` and `elements` exceeds `iso`"};

@@ -257,6 +257,86 @@ TEST(BlobTrees, SumsAgreeWithMetaballs) {
   EXPECT_GT(met, 100u);
 }
 
+MetaballsShape capsules(const std::vector<FieldElement>& elements, double iso = 0.5) {
+  return {iso, {}, elements};
+}
+
+/// A capsule across, along, past its ends, and in the planes of its ends, where its parts meet.
+TEST(Metaballs, ACapsuleHasRoundEnds) {
+  for (const Vec3d& to : {Vec3d{0, 2, 0}, Vec3d{0, -4, 0}}) {
+    const MetaballsShape s = capsules({element(SegmentSkeleton{{0, -1, 0}, to})});
+    const double low = std::min(-1.0, to.y), high = std::max(-1.0, to.y);
+    for (const double y : {low, low + 1e-9, 0.5 * (low + high), high})
+      expect_at(crossings(s, {-3, static_cast<float>(y), 0}, {1, 0, 0}), {3 - kHalf, 3 + kHalf});
+    const auto from = static_cast<float>(low - 4);
+    expect_at(crossings(s, {0, from, 0}, {0, 1, 0}), {low - kHalf - from, high + kHalf - from});
+    const double off = 0.6 * kHalf, cap = 0.8 * kHalf;
+    expect_at(crossings(s, {static_cast<float>(off), from, 0}, {0, 1, 0}),
+              {low - cap - from, high + cap - from});
+    EXPECT_EQ(crossings(s, {-3, static_cast<float>(high + 1.01 * kHalf), 0}, {1, 0, 0}).size(), 0u);
+    EXPECT_EQ(crossings(s, {static_cast<float>(1.01 * kHalf), from, 0}, {0, 1, 0}).size(), 0u);
+  }
+  expect_at(crossings(capsules({element(SegmentSkeleton{{1, 1, 1}, {1, 1, 1}})}), {-3, 1, 1}, {1, 0, 0}),
+            {4 - kHalf, 4 + kHalf});
+  const EllipsoidSkeleton egg{{0, 0, 0}, {1, 2, 3}, {0, 0, 90}};
+  expect_at(crossings(capsules({element(egg)}), {-9, 0, 0}, {1, 0, 0}), {9 - 2 * kHalf, 9 + 2 * kHalf}, 2e-6);
+}
+
+/// More of them in one place than are kept for a ray.
+TEST(Metaballs, CapsulesAddUp) {
+  std::vector<FieldElement> elements;
+  for (int i = 0; i < 30; ++i)
+    elements.push_back(element(SegmentSkeleton{{0, -1, 0}, {0, 1, 0}},
+                               {PotentialKind::wyvill, 1, 0, i % 3 == 2 ? -0.05 : 0.1}));
+  MetaballsShape s = capsules(elements);
+  s.balls.push_back({{0, 0, 0}, 0.1, 1e-9});
+  const double q = std::sqrt(0.5 / (20 * 0.1 - 10 * 0.05)), r = std::sqrt(1 - q);
+  expect_at(crossings(s, {-4, 0.5f, 0}, {1, 0, 0}), {4 - r, 4 + r});
+}
+
+/// The same sums by pieces and by intervals.
+TEST(Metaballs, CapsulesAgreeWithBlobTrees) {
+  CaseRandom random(5);
+  std::size_t met = 0;
+  for (int scene = 0; scene < 6; ++scene) {
+    std::vector<FieldElement> elements;
+    for (int i = 0; i < 6; ++i) {
+      const Potential p{PotentialKind::wyvill, 0.3 + random.unit(), 0, random.unit() < 0.3 ? -0.7 : 1.0};
+      if (random.unit() < 0.6)
+        elements.push_back(element(SegmentSkeleton{random.vector(), random.vector()}, p));
+      else
+        elements.push_back(element(
+            EllipsoidSkeleton{
+                random.vector(), {0.2 + random.unit(), 0.2 + random.unit(), 1}, random.vector() * 180.0},
+            p));
+    }
+    const MetaballsShape pieces = capsules(elements, 0.4);
+    const BlobTreeShape tree = blend(Blend::Op::sum, elements, 0.4);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3d from = normalize(random.vector()) * 4.0, to = random.vector();
+      const auto one = crossings(pieces, Vec3f(from), Vec3f(to - from));
+      const auto other = crossings(tree, Vec3f(from), Vec3f(to - from));
+      ASSERT_EQ(one.size(), other.size()) << scene << " " << i;
+      for (std::size_t k = 0; k < one.size(); ++k) EXPECT_NEAR(one[k].t, other[k].t, 1e-6);
+      met += one.size();
+    }
+  }
+  EXPECT_GT(met, 300u);
+}
+
+/// What only blob trees have is nothing here.
+TEST(Metaballs, OtherPotentialsAndPolygonsAreNothing) {
+  const Vec3f from{-3, 0, 0}, along{1, 0, 0};
+  EXPECT_EQ(
+      crossings(capsules({element(PointSkeleton{}, {PotentialKind::gaussian, 1, 0, 1})}), from, along).size(),
+      0u);
+  const PolygonSkeleton triangle{{{0, -1, -1}, {0, 1, -1}, {0, 0, 1}}};
+  EXPECT_EQ(crossings(capsules({element(triangle)}), from, along).size(), 0u);
+  EXPECT_EQ(
+      crossings(capsules({element(EllipsoidSkeleton{{0, 0, 0}, {1, 0, 1}, {0, 0, 0}})}), from, along).size(),
+      0u);
+}
+
 /// As deep as is allowed, and one level too deep.
 TEST(BlobTrees, NestingIsBounded) {
   for (const int levels : {kMaxBlendLevels, kBlobStack + 1}) {

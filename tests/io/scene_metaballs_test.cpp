@@ -67,6 +67,29 @@ TEST(SceneMetaballs, ReadsEveryParameter) {
   EXPECT_EQ(d.blends[6].op, Blend::Op::difference);
 }
 
+/// Where all is of one potential and nothing flat.
+TEST(SceneMetaballs, ElementsOfOnePotentialAreBalls) {
+  SceneFiles files;
+  const Scene scene = files.load_v1(
+      "objects:\n"
+      "  - metaballs:\n"
+      "      iso: 0.25\n"
+      "      elements:\n"
+      "        - {segment: {from: [0, 1, 0], to: [2, 0, 0]}, radius: 3, weight: 2}\n"
+      "        - {point: [1, 2, 3], radius: 4}\n"
+      "        - {ellipsoid: {center: [0, 1, 0], radii: [1, 2, 3]}, radius: 0.5, weight: -1}\n");
+  const auto& shape = form_of<MetaballsShape>(scene, 0);
+  EXPECT_EQ(shape.iso, 0.25);
+  ASSERT_EQ(shape.balls.size(), 1u);
+  EXPECT_EQ(shape.balls[0].center, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(shape.balls[0].radius, 4);
+  ASSERT_EQ(shape.elements.size(), 2u);
+  EXPECT_EQ(std::get<SegmentSkeleton>(shape.elements[0].skeleton).to, (Vec3d{2, 0, 0}));
+  EXPECT_EQ(shape.elements[0].potential.scale, 3);
+  EXPECT_EQ(shape.elements[0].potential.weight, 2);
+  EXPECT_EQ(std::get<EllipsoidSkeleton>(shape.elements[1].skeleton).radii, (Vec3d{1, 2, 3}));
+}
+
 TEST(SceneMetaballs, ErrorsHaveTheirPlace) {
   std::string deep = "{point: [0, 0, 0]}";
   for (int i = 0; i <= kMaxBlendLevels; ++i) deep = "{max: [" + deep + "]}";

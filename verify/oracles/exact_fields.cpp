@@ -13,6 +13,8 @@ namespace oktett {
 
 namespace {
 
+ExactOracle oracle_of(const BlobTreeShape& shape);
+
 /// Balls by the cells of a grid that they reach into, so that a thousand can be added up.
 class BallGrid {
  public:
@@ -48,6 +50,17 @@ class BallGrid {
   Vec3d lo_, step_;
   std::vector<std::uint32_t> lists_[kCells * kCells * kCells];
 };
+
+/// The same sum as a blob tree.
+BlobTreeShape as_tree(const MetaballsShape& shape) {
+  BlobTreeShape tree{shape.iso, shape.elements, {}};
+  for (const MetaBall& b : shape.balls)
+    tree.elements.push_back({PointSkeleton{b.center}, {PotentialKind::wyvill, b.radius, 0, b.strength}});
+  const auto count = static_cast<std::uint32_t>(tree.elements.size());
+  for (std::uint32_t i = 0; i < count; ++i) tree.blends.push_back({Blend::Op::element, i, 0});
+  tree.blends.push_back({Blend::Op::sum, 0, count});
+  return tree;
+}
 
 /// Balls that `change`, which is also told those before, has changed.
 template <class F>
@@ -94,6 +107,11 @@ ExactOracle coincident_metaballs(CaseRandom& random) {
 }  // namespace
 
 ExactOracle oracle_of(const MetaballsShape& shape) {
+  if (!shape.elements.empty()) {
+    ExactOracle sum = oracle_of(as_tree(shape));
+    sum.shape = {shape};
+    return sum;
+  }
   ExactOracle oracle{{shape}, {}};
   for (const MetaBall& b : shape.balls)
     if (b.strength > 0) oracle.grow(b.center, b.radius);
@@ -339,8 +357,45 @@ ExactOracle tree(CaseRandom& random) {
   return oracle_of(s);
 }
 
+/// Capsules and ellipsoids of either sign, some without length, some that touch, some thin; and balls.
+ExactOracle capsules(CaseRandom& random) {
+  MetaballsShape s{0.2 + 0.6 * random.unit(), {}, {}};
+  const int count = 1 + static_cast<int>(random.unit() * 7);
+  for (int i = 0; i < count; ++i) {
+    FieldElement e;
+    e.potential = {PotentialKind::wyvill, 0.2 + random.unit(), 0, 0.6 + random.unit()};
+    const double dice = random.unit();
+    if (i > 0 && random.unit() < 0.25) e.potential.weight = -e.potential.weight;
+    if (dice < 0.2) {
+      s.balls.push_back({random.vector(), e.potential.scale, e.potential.weight});
+      continue;
+    }
+    if (dice < 0.7) {
+      SegmentSkeleton bone{random.vector(), random.vector()};
+      if (random.unit() < 0.1) bone.to = bone.from;
+      if (random.unit() < 0.1) bone.to = bone.from + Vec3d{0, 0, random.magnitude(-9, 0)};
+      if (random.unit() < 0.2 && !s.elements.empty())
+        if (const auto* const other = std::get_if<SegmentSkeleton>(&s.elements[0].skeleton))
+          bone.from = other->to;
+      e.skeleton = bone;
+    } else {
+      const double flat = random.unit() < 0.2 ? 0.02 : 1;
+      e.skeleton = EllipsoidSkeleton{random.vector(),
+                                     {0.4 + random.unit(), 0.4 + random.unit(), flat * (0.4 + random.unit())},
+                                     random.vector() * 180.0};
+    }
+    s.elements.push_back(e);
+  }
+  const bool any =
+      std::ranges::any_of(s.elements, [](const FieldElement& e) { return e.potential.weight > 0; });
+  if (!any) s.elements.push_back({SegmentSkeleton{}, {PotentialKind::wyvill, 0.5, 0, 1}});
+  return oracle_of(s);
+}
+
 }  // namespace
 
-std::vector<ExactCase> blobtree_cases() { return {{"metaballs_skeletons", skeletons}, {"blobtree", tree}}; }
+std::vector<ExactCase> blobtree_cases() {
+  return {{"metaballs_capsules", capsules}, {"metaballs_skeletons", skeletons}, {"blobtree", tree}};
+}
 
 }  // namespace oktett
