@@ -127,6 +127,10 @@ TEST(PovScene, ShapesHaveTheirKeys) {
        "{metaballs: {iso: 0.6, elements: [{point: [1, 0, 0], weight: 1, radius: 2}, {segment: {from: [0, 0, "
        "0], to: [0, 1, "
        "0]}, weight: -0.5, radius: 1}]}}"},
+      {"blob { sphere { x, 2, 1 scale <1, 2, 3> rotate z*90 translate z } threshold 0.5 }",
+       "{metaballs: {iso: 0.5, elements: [{ellipsoid: {center: [0, 1, 1], radii: [2, 1, 3], rotate: [0, 0, "
+       "0]}, "
+       "weight: 1, radius: 2}]}}"},
       {"isosurface { function { x*x + y - 2 } threshold 0.5 }",
        "{implicit: {function: \"(((x * x) + y) - 2) - 0.5\", bounds: {min: [-1, -1, -1], max: [1, 1, 1]}}}"},
       {"julia_fractal { <-0.1, 0.8, 0, 0> max_iteration 8 }",

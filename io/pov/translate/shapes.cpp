@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/image/heights.h"
+#include "io/pov/translate/blobs.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/meshes.h"
 #include "io/pov/translate/sweeps.h"
@@ -45,7 +46,7 @@ class ShapeMaker {
     if (k == "quartic") return polynomial(4);
     if (k == "poly") return polynomial(0);
     if (k == "superellipsoid") return superellipsoid();
-    if (k == "blob") return blob();
+    if (k == "blob") return make_blob(context_, a_);
     if (k == "lathe") return lathe();
     if (k == "sor") return sor();
     if (k == "isosurface") return isosurface();
@@ -223,85 +224,6 @@ class ShapeMaker {
                                        p, q, r)));
     put_bounds(keys, {-1.01, -1.01, -1.01}, {1.01, 1.01, 1.01});
     return one("implicit", keys);
-  }
-
-  // ---- Blobs.
-
-  std::optional<Shapes> blob() {
-    double threshold = 1;
-    Shapes shapes;
-    const Node keys = map(), elements = tree_.list(where_);
-    bool any = false;
-    while (!a_.at_end()) {
-      if (a_.take_word("threshold")) {
-        threshold = a_.number("a threshold");
-      } else if (const Block* const block = a_.peek_block(); block != nullptr && is_component(*block)) {
-        a_.take();
-        any |= add_component(*block, elements);
-      } else if (a_.take_word("component")) {
-        // The order of old scenes.
-        const double strength = a_.number("a strength"), radius = std::abs(a_.number("a radius"));
-        any |= strength > 0;
-        Tree::push(elements, element_node(where_, tree_.vector(where_, a_.vector("a point")), "point",
-                                          strength, radius));
-      } else {
-        break;
-      }
-    }
-    if (!any) return left_out("the blob has no component of positive strength");
-    if (!(threshold > 0)) return left_out("the threshold of the blob is not above 0");
-    tree_.put(keys, "iso", number(threshold)), tree_.put(keys, "elements", elements);
-    return one("metaballs", keys);
-  }
-
-  static bool is_component(const Block& block) {
-    return block.keyword == "sphere" || block.keyword == "cylinder";
-  }
-
-  Node element_node(const Place& where, Node skeleton, std::string_view key, double strength, double radius) {
-    const Node element = tree_.map(where, key, skeleton);
-    tree_.put(element, "weight", tree_.number(where, strength));
-    tree_.put(element, "radius", tree_.number(where, radius));
-    return element;
-  }
-
-  /// Returns whether its strength is positive.
-  bool add_component(const Block& block, Node elements) {
-    Arguments a(context_, block);
-    const bool is_segment = block.keyword == "cylinder";
-    Vec3d from, to;
-    double radius = 0, strength = 0;
-    from = a.vector("a point");
-    if (is_segment) to = a.vector("a point");
-    radius = a.number("a radius");
-    a.take_word("strength");
-    strength = a.number("a strength");
-    Moves moves;
-    while (!a.at_end())
-      if (!take_moves(context_, a, moves)) {
-        const Block* const look = a.peek_block();
-        if (look != nullptr && (look->keyword == "texture" || look->keyword == "pigment"))
-          context_.tell("blob texture", look->where, "textures of single components of blobs are left out");
-        a.take();
-      }
-    const Place& w = block.where;
-    const auto& m = moves.all.m;
-    const Vec3d scale{std::hypot(m[0][0], m[1][0], m[2][0]), std::hypot(m[0][1], m[1][1], m[2][1]),
-                      std::hypot(m[0][2], m[1][2], m[2][2])};
-    const bool even = max_component(abs(scale - Vec3d{scale.x, scale.x, scale.x})) < 1e-9 * scale.x;
-    if (!even)
-      context_.tell("blob scale", w,
-                    "components of blobs that are stretched along one axis are scaled evenly");
-    const double size = even ? scale.x : std::cbrt(scale.x * scale.y * scale.z);
-    radius = std::abs(radius) * size;
-    const Node at = tree_.vector(w, moves.all.point(from));
-    Node ends = at;
-    if (is_segment) {
-      ends = tree_.map(w, "from", at);
-      tree_.put(ends, "to", tree_.vector(w, moves.all.point(to)));
-    }
-    Tree::push(elements, element_node(w, ends, is_segment ? "segment" : "point", strength, radius));
-    return strength > 0;
   }
 
   // ---- Surfaces of revolution.
