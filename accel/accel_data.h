@@ -44,6 +44,13 @@ struct CsgStep {
 /// ray meets.
 inline constexpr std::size_t kMaxCsgSteps = 32;
 
+/// A primitive outside of which there is nothing of a combination.
+struct CsgProbe {
+  LeafEntry leaf;  ///< holds it alone
+  std::uint32_t geometry;
+  bool unbounded;
+};
+
 /// A combination in the tree. A *solid* of it is either one primitive of a shape, or a whole mesh, instance
 /// or combination. A ray may be inside a solid of the second kind several times.
 struct CsgItem {
@@ -58,9 +65,14 @@ struct CsgItem {
   std::vector<std::uint8_t> needed;  ///< per geometry: 1 if no point outside of it is in the combination
   /// The crossings of all solids can be listed for several rays at once (accel/traverse/csg_lanes.h).
   bool in_lanes = false;
+  /// All solids are shapes: crossings with several rays at once can be listed, but are swept one by one.
+  bool listed = false;
   std::vector<std::uint32_t> leaf_order;  ///< leaves of `solids`, those with needed geometries first
-  std::vector<CsgStep> steps;             ///< of all nodes, if there are at most kMaxCsgSteps
-  std::uint32_t item = 0;                 ///< item of the combination in the structure that holds it
+  /// The needed geometries that are quickly asked, if others are not. A ray that goes one by one asks them
+  /// first.
+  std::vector<CsgProbe> probes;
+  std::vector<CsgStep> steps;  ///< of all nodes, if there are at most kMaxCsgSteps
+  std::uint32_t item = 0;      ///< item of the combination in the structure that holds it
   /// Number of the first path through the combination, see csg_path().
   std::uint32_t first_path = 0;
 };

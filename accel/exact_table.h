@@ -74,6 +74,12 @@ OKTETT_INLINE void push_row(CrossingLanes<W>& out, const Mask<float, W, A>& vali
   out.item[row] = item, out.exact[row] = exact;
 }
 
+/// Where the crossings of each of W rays go.
+template <int W>
+struct RayLists {
+  HitList* list[W] = {};
+};
+
 // ---- Rays against cells of exact surfaces.
 
 struct ExactPoolBase;
@@ -94,6 +100,9 @@ struct ExactCode {
                     HitLanes<F>& hits);
   /// Appends every crossing of one ray with the cell.
   void (*all)(const ExactPoolBase& pool, std::uint32_t cell, const Ray& ray, HitList& hits);
+  /// The same for the rays in `lanes`, with the same bits, also beyond tmax.
+  void (*lists)(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
+                const RayLists<kLanes>& out);
   /// Appends every crossing of the rays in `lanes` with the cell; of surfaces that list their crossings at
   /// once (ExactOps::lists_at_once).
   void (*rows)(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
@@ -120,6 +129,8 @@ struct ExactSurfaceCode {
   /// Only in scalar code: a ray alone has the same bits in every set.
   static void all(const ExactPoolBase& pool, std::uint32_t cell, const Ray& ray,
                   HitList& hits) requires std::is_same_v<A, ScalarIsa>;
+  static void lists(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
+                    const RayLists<kLanes>& out);
   static void rows(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
                    CrossingLanes<kLanes>& out);
   static void filter(const ExactPoolBase& pool, std::uint32_t cell, const BeamView& beam, unsigned groups,

@@ -129,7 +129,8 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
     const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
     return is_exact(kind) && !exact_ops(kind).one_cell;
   };
-  std::vector<Crossing> crossings;
+  static thread_local std::vector<Crossing> crossings;
+  crossings.clear();
   std::size_t kept = first;
   for (std::size_t i = first; i < list.size(); ++i) {
     if (own_exact(list[i].hit))

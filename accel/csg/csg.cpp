@@ -39,17 +39,19 @@ bool prepare_senses(const Accel& accel, std::set<const Accel*>& seen) {
   return has_meshes;
 }
 
-/// Whether the crossings of all solids can be listed in lanes: all are primitives whose crossings one call
-/// lists.
+/// Whether one call lists all crossings with a solid.
+bool is_primitive(const Accel& solids, Kind kind) {
+  bool solid = is_exact(kind) && exact_ops(kind).lists_at_once();
+  visit_pool(kind, solids.pools, [&]<class S>(S, const auto&) { solid = kSolid<S>; });
+  return solid;
+}
+
+/// Whether the crossings of all solids can be listed in lanes.
 bool fits_lanes(const CsgItem& csg) {
   const Accel& solids = *csg.solids;
   if (solids.first_item.back() > 0x7fffffff) return false;
-  return std::all_of(solids.kinds.begin(), solids.kinds.end(), [&](std::uint8_t k) {
-    const auto kind = static_cast<Kind>(k);
-    bool solid = is_exact(kind) && exact_ops(kind).lists_at_once();
-    visit_pool(kind, solids.pools, [&]<class S>(S, const auto&) { solid = kSolid<S>; });
-    return solid;
-  });
+  return std::all_of(solids.kinds.begin(), solids.kinds.end(),
+                     [&](std::uint8_t k) { return is_primitive(solids, static_cast<Kind>(k)); });
 }
 
 void number_solids(CsgItem& csg) {
@@ -100,6 +102,24 @@ void find_needed(CsgItem& csg) {
   std::stable_partition(csg.leaf_order.begin(), csg.leaf_order.end(), [&](std::uint32_t leaf) {
     return kinds.contains(static_cast<std::uint8_t>(solids.leaves[leaf].kind));
   });
+}
+
+/// Those of the needed geometries that are primitives.
+void find_probes(CsgItem& csg) {
+  const Accel& solids = *csg.solids;
+  const auto add = [&](const LeafEntry& leaf) {
+    if (!is_primitive(solids, leaf.kind)) return;
+    for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+      std::uint32_t item = kNoId;
+      if (is_exact(leaf.kind)) item = solids.exact_pool(leaf.kind).item_of_cell(k);
+      visit_pool(leaf.kind, solids.pools, [&](auto, const auto& pool) { item = pool.item[k]; });
+      const std::uint32_t g = solids.geometry_of(item);
+      if (csg.needed[g] != 0)
+        csg.probes.push_back({{k, 1, leaf.kind, leaf.test}, g, is_unbounded(solids.geometries[g])});
+    }
+  };
+  for (const LeafEntry& leaf : solids.unbounded) add(leaf);
+  for (const LeafEntry& leaf : solids.leaves) add(leaf);
 }
 
 constexpr std::uint32_t kAll = ~std::uint32_t{0};
@@ -160,6 +180,9 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   number_solids(csg);
   csg.in_lanes = fits_lanes(csg);
   find_needed(csg);
+  csg.listed = std::ranges::all_of(csg.solids->kinds,
+                                   [](std::uint8_t kind) { return is_shape(static_cast<Kind>(kind)); });
+  if (!csg.in_lanes) find_probes(csg);
   if (csg.nodes.size() <= kMaxCsgSteps)
     for (std::uint32_t node = 0; node < csg.nodes.size(); ++node) csg.steps.push_back(step_of(csg, node));
   return csg;

@@ -140,6 +140,39 @@ void ExactSurfaceCode<S, A>::all(const ExactPoolBase& base, std::uint32_t index,
 }
 
 template <class S, class A>
+void ExactSurfaceCode<S, A>::lists(const ExactPoolBase& base, std::uint32_t index, const RayLanes<F>& rays,
+                                   unsigned lanes, const RayLists<kLanes>& out) {
+  const auto& pool = static_cast<const typename S::Pool&>(base);
+  using D = Simd<double, F::kWidth, A>;
+  constexpr int K = S::kMaxCrossings, W = F::kWidth;
+  const ExactCell& cell = pool.cells[index];
+  const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
+  LineRange<D> range;
+  auto active = D::M::from_bits(lanes) & cell_range<S>(line, cell, range);
+  cut_range(range, range_begin(to_double(rays.tmin)));
+  const std::uint32_t item = pool.frames[cell.element].item;
+  const F last(std::numeric_limits<float>::max());
+  for (active = active & (range.a <= range.b); any(active);) {
+    Crossings<K, D> c;
+    S::template crossings<K>(pool, cell, line, range, active, c);
+    for (int k = 0; k < K; ++k) {
+      if (none(active & (c.t[k] < D(roots::kNoRoot)))) break;
+      const F t = to_float(c.t[k]);
+      const unsigned valid = bits(mask_cast<float>(active) & (rays.tmin < t) & (t <= last));
+      if (valid == 0) continue;
+      float places[W], turns[W], parts[W];
+      t.store(places), to_float(c.turn[k]).store(turns), to_float(c.part[k]).store(parts);
+      for (unsigned rest = valid; rest != 0; rest &= rest - 1) {
+        const int i = __builtin_ctz(rest);
+        out.list[i]->push({places[i], parts[i], turns[i], item, kNoId}, turns[i]);
+      }
+    }
+    active = active & (c.up_to < range.b);
+    cut_range(range, c.up_to);
+  }
+}
+
+template <class S, class A>
 void ExactSurfaceCode<S, A>::rows(const ExactPoolBase& base, std::uint32_t index, const RayLanes<F>& rays,
                                   unsigned lanes, CrossingLanes<kLanes>& out) {
   constexpr int K = S::kMaxCrossings;

@@ -99,11 +99,12 @@ template const PointCode& point_code<OKTETT_ISA>();
 template <class A>
 constexpr ExactTable<A> make_exact_table() {
   ExactTable<A> table{};
-#define SURFACE(Type, name)                                                       \
-  table.of[static_cast<int>(Kind::name)] = {                                      \
-      ExactSurfaceCode<Type, A>::first,   ExactSurfaceCode<Type, ScalarIsa>::all, \
-      ExactSurfaceCode<Type, A>::rows,    ExactSurfaceCode<Type, A>::filter,      \
-      ExactSurfaceCode<Type, A>::outside, ExactSurfaceCode<Type, A>::interactions};
+#define SURFACE(Type, name)                                                           \
+  table.of[static_cast<int>(Kind::name)] = {                                          \
+      ExactSurfaceCode<Type, A>::first,       ExactSurfaceCode<Type, ScalarIsa>::all, \
+      ExactSurfaceCode<Type, A>::lists,       ExactSurfaceCode<Type, A>::rows,        \
+      ExactSurfaceCode<Type, A>::filter,      ExactSurfaceCode<Type, A>::outside,     \
+      ExactSurfaceCode<Type, A>::interactions};
 #include "kernels/exact/surfaces.def"
 #undef SURFACE
   return table;

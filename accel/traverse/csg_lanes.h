@@ -42,6 +42,30 @@ class CsgLanes {
   /// Finds the first crossings. False if there are too many crossings or the expression is too large.
   OKTETT_NOINLINE bool first(Found& found) { return gather() && sweep(found); }
 
+  /// Drops the rays that are never inside of one of the probes; returns those that are left.
+  OKTETT_NOINLINE unsigned probe() {
+    doubles_ = to_double(rays_);
+    for (const CsgProbe& probe : csg_.probes)
+      if (!gather_leaf(probe.leaf, lanes_, probe.unbounded)) break;
+    return lanes_;
+  }
+
+  /// Appends the crossings of each ray with all solids, in any order.
+  OKTETT_NOINLINE void list(const RayLists<N>& out) const {
+    const Accel& solids = *csg_.solids;
+    const auto list_leaf = [&](const LeafEntry& leaf, unsigned lanes) {
+      for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
+        if (is_exact(leaf.kind))
+          exact_code<A>(leaf.kind).lists(solids.exact_pool(leaf.kind), k, rays_, lanes, out);
+        else
+          list_shape(leaf.kind, k, lanes, out);
+      return true;
+    };
+    for (const LeafEntry& leaf : solids.unbounded) list_leaf(leaf, lanes_);
+    // Of an inside there may be no cell, but of its end.
+    walk(F(std::numeric_limits<float>::infinity()), list_leaf);
+  }
+
   const CrossingLanes<N>& rows() const { return rows_; }
 
  private:
@@ -56,7 +80,10 @@ class CsgLanes {
         if (!gather_leaf(solids.leaves[leaf], lanes_, false)) return false;
       return true;
     }
-    return walk();
+    // A solid beyond the end of a ray has no effect on the crossings before it.
+    return walk(rays_.tmax, [&](const LeafEntry& leaf, unsigned lanes) {
+      return gather_leaf(leaf, lanes & lanes_, false);
+    });
   }
 
   /// Sweeps the crossings from near to far until each ray enters or leaves the combination, or ends. False if
@@ -95,8 +122,9 @@ class CsgLanes {
     return select(s <= F(std::numeric_limits<float>::max()), F(0x1p-22f) * (s / speed), F(0.0f));
   }
 
-  /// Gathers from the leaves along the rays.
-  OKTETT_NOINLINE bool walk() {
+  /// Calls visit(leaf, lanes) for the leaves along the rays, up to `end`, until it returns false.
+  template <class Visit>
+  OKTETT_INLINE bool walk(const F& end, Visit&& visit) const {
     const Accel& solids = *csg_.solids;
     const typename F::M negative[3] = {rays_.d.x < F(0.0f), rays_.d.y < F(0.0f), rays_.d.z < F(0.0f)};
     return visit_leaves(
@@ -108,16 +136,12 @@ class CsgLanes {
               const F lo(node.plane[2 * k][c]), hi(node.plane[2 * k + 1][c]);
               near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
             }
-            // A solid beyond the end of a ray has no effect on the crossings before it.
             F near, far;
-            slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
-                          far);
+            slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, end, slab_slack_, near, far);
             push(c, lanes & lanes_ & bits(near <= far));
           }
         },
-        [&](NodeRef leaf, unsigned lanes) {
-          return gather_leaf(solids.leaves[leaf.table_index()], lanes & lanes_, false);
-        });
+        [&](NodeRef leaf, unsigned lanes) { return visit(solids.leaves[leaf.table_index()], lanes); });
   }
 
   OKTETT_INLINE bool gather_leaf(const LeafEntry& leaf, unsigned lanes, bool unbounded) {
@@ -142,13 +166,30 @@ class CsgLanes {
   OKTETT_INLINE std::uint32_t gather_shape(Kind kind, std::uint32_t k, unsigned lanes) {
     std::uint32_t item = kNoId;
     visit_pool(kind, csg_.solids->pools, [&]<class S>(S, const typename S::Pool& pool) {
-      if constexpr (kSolid<S>) item = shape_rows<S>(pool, k, lanes);
+      if constexpr (kSolid<S>) item = shape_rows<S>(pool, k, lanes, rows_);
     });
     return item;
   }
 
+  /// Shapes without an inside are no solids.
+  OKTETT_INLINE void list_shape(Kind kind, std::uint32_t k, unsigned lanes, const RayLists<N>& out) const {
+    visit_pool(kind, csg_.solids->pools, [&]<class S>(S, const typename S::Pool& pool) {
+      if constexpr (kSolid<S>) {
+        CrossingLanes<N> rows;
+        shape_rows<S>(pool, k, lanes, rows);
+        for (int row = 0; row < rows.rows; ++row)
+          for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+            const int i = __builtin_ctz(rest);
+            if (rows.t[row][i] <= std::numeric_limits<float>::max())
+              out.list[i]->push({rows.t[row][i], 0, 0, rows.item[row], kNoId}, rows.turn[row][i]);
+          }
+      }
+    });
+  }
+
   template <class S>
-  OKTETT_INLINE std::uint32_t shape_rows(const typename S::Pool& pool, std::uint32_t k, unsigned lanes) {
+  OKTETT_INLINE std::uint32_t shape_rows(const typename S::Pool& pool, std::uint32_t k, unsigned lanes,
+                                         CrossingLanes<N>& rows) const {
     const auto shape = S::template broadcast<D>(pool, k);
     D t[S::kRoots];
     const auto meets = mask_cast<float>(S::roots(doubles_, shape, t)) & F::M::from_bits(lanes);
@@ -159,7 +200,7 @@ class CsgLanes {
       F turn(j == 0 ? -1.0f : 1.0f);
       if constexpr (kSolid<S> && S::kRoots == 1)
         turn = select(mask_cast<float>(dot_lanes(shape.n, doubles_.d) < D(0.0)), F(-1.0f), F(1.0f));
-      push_row(rows_, valid, tf, turn, F(0.0f), pool.item[k], false);
+      push_row(rows, valid, tf, turn, F(0.0f), pool.item[k], false);
     }
     return pool.item[k];
   }
@@ -294,6 +335,9 @@ class CsgLanes {
 template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
 
+template <class A>
+void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits);
+
 /// Appends all crossings of a ray with the solids of a combination, from tmin to infinity: crossings beyond
 /// tmax also tell whether the ray begins inside a solid. False for a ray that can hit nothing.
 template <class A>
@@ -302,6 +346,12 @@ OKTETT_NOINLINE bool gather_solids(const CsgItem& csg, const Ray& ray, HitList& 
   if (state.set({ray.origin, ray.tmin, ray.direction, std::numeric_limits<float>::infinity()},
                 csg.solids->bounds) == 0)
     return false;
+  for (const CsgProbe& probe : csg.probes) {
+    collect_leaf(*csg.solids, probe.leaf, state, crossings);
+    const bool met = crossings.size() > 0;
+    crossings.shrink(0);
+    if (!met && !(probe.unbounded && runs_inside(*csg.solids, probe.geometry, ray))) return false;
+  }
   collect(*csg.solids, state, crossings);
   return true;
 }
@@ -333,19 +383,47 @@ OKTETT_NOINLINE void csg_together(const CsgItem& csg, RayState<W, A>& r, int bas
   }
 }
 
+/// The rays in `lanes` of the CsgLanes<A>::N rays from `base` on against a combination of shapes: solved at
+/// once, swept one by one.
+template <int W, class A>
+OKTETT_NOINLINE void csg_listed(const CsgItem& csg, RayState<W, A>& r, int base, unsigned lanes) {
+  constexpr int N = CsgLanes<A>::N;
+  CsgLanes<A> packet(csg, r, base, lanes);
+  lanes = packet.probe();
+  // A ray alone is faster by itself.
+  if ((lanes & (lanes - 1)) == 0) return csg_singly(csg, r, lanes << base);
+  CsgSweep sweeps[N];
+  RayLists<N> lists;
+  for (int i = 0; i < N; ++i) lists.list[i] = &sweeps[i].solids();
+  packet.list(lists);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes), k = base + i;
+    if (lists.list[i]->size() == 0) continue;
+    merge_crossings(*csg.solids, *lists.list[i], 0);
+    const Ray ray{{r.o[0][k], r.o[1][k], r.o[2][k]}, r.tmin[k], {r.d[0][k], r.d[1][k], r.d[2][k]}, r.tmax[k]};
+    Crossing found;
+    if (sweeps[i].first(csg, ray, found))
+      accept_hit(r, k, found.hit.t, found.hit.u, found.hit.v, found.hit.item, found.hit.instance);
+  }
+}
+
 /// The rays in `lanes` against the combinations of a leaf.
 template <int W, class A>
 OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r, unsigned lanes) {
   constexpr int N = CsgLanes<A>::N;
   for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
     const CsgItem& csg = accel.combinations[k];
-    if (!csg.in_lanes) {
+    if (!csg.in_lanes && !(csg.listed && N > 1)) {
       csg_singly(csg, r, lanes);
       continue;
     }
     for (int base = 0; base < W; base += N) {
       const unsigned part = lanes >> base & ((2u << (N - 1)) - 1);
-      if (part != 0) csg_together(csg, r, base, part);
+      if (part == 0) continue;
+      if (csg.in_lanes)
+        csg_together(csg, r, base, part);
+      else
+        csg_listed(csg, r, base, part);
     }
   }
 }

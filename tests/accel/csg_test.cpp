@@ -352,6 +352,30 @@ TEST(Csg, TheOutsideOfAnEllipsoidIsEverywhere) {
   EXPECT_EQ(crossings(*rest, ray_along_x(1.5f)), Distances{});
 }
 
+/// Endless primitives are asked before what is not traced in lanes: rays along them, which never cross them,
+/// are inside.
+TEST(Csg, RaysAlongEndlessOperandsAreInside) {
+  const Geometry pipe = solid(ExactShape{QuadricShape{{0, 1, 1, 0, 0, 0, 0, 0, 0, -0.25}}}, 1),
+                 blob = solid(ExactShape{MetaballsShape{0.5, {{{0, 0, 0}, 2, 1}}}}, 0);
+  const float r = 2 * std::sqrt(1 - std::sqrt(0.5f));
+  const auto near = [](const Distances& found, const Distances& wanted) {
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-5f);
+  };
+  for (const bool first : {true, false}) {
+    const std::vector<Geometry> both = first ? std::vector{pipe, blob} : std::vector{blob, pipe};
+    const auto core = built(whole(combine(CsgOp::intersect, both)));
+    near(crossings(*core, ray_along_x()), {8 - r, 8 + r});
+    near(crossings(*core, ray_along_x(0, 0, 0)), {r});
+    near(crossings(*core, ray_along_x(0.6f)), {});
+    near(crossings(*core, {{0, -4, 0}, 0, {0, 1, 0}, kInfinity}), {3.5f, 4.5f});
+    near(crossings(*core, {{0, 1, 0}, 0, {0, 1, 0}, kInfinity}), {});
+  }
+  const auto bored = built(whole(combine(CsgOp::subtract, {blob, pipe})));
+  near(crossings(*bored, ray_along_x()), {});
+  near(crossings(*bored, {{0, -4, 0}, 0, {0, 1, 0}, kInfinity}), {4 - r, 3.5f, 4.5f, 4 + r});
+}
+
 TEST(Csg, DegenerateCombinationsAreNothing) {
   const Ray ray = ray_along_x();
   EXPECT_EQ(crossings(*built(whole({})), ray), Distances{});

@@ -53,7 +53,7 @@ Inside inside_convex(const TriangleMesh& mesh, const Affine& to_world) {
 class TreeMaker {
  public:
   explicit TreeMaker(CaseRandom& random)
-      : random_(random), coarse_(random.unit() < 0.5), simple_(random.unit() < 0.5) {
+      : random_(random), coarse_(random.unit() < 0.5), solids_(draw_solids(random.unit())) {
     static const OracleMesh ball = make_icosphere(2), cube = make_cube();
     ball_ = &ball.mesh, cube_ = &cube.mesh;
   }
@@ -80,6 +80,13 @@ class TreeMaker {
   }
 
  private:
+  /// What the solids of a tree are. Several rays at once go through trees of primitives, and are solved at
+  /// once and swept one by one in trees of shapes; with meshes each ray goes alone.
+  enum class Solids { primitives, shapes, all };
+  static Solids draw_solids(double dice) {
+    return dice < 0.4 ? Solids::primitives : dice < 0.7 ? Solids::shapes : Solids::all;
+  }
+
   /// On a coarse grid many faces coincide.
   double coordinate() { return coarse_ ? std::floor(random_.unit() * 9 - 4) / 4 : random_.sign(); }
   Vec3d place() { return {coordinate(), coordinate(), coordinate()}; }
@@ -97,7 +104,8 @@ class TreeMaker {
 
   Inside solid(CsgExpression& e) {
     const Vec3d c = place();
-    const double r = size(), kind = random_.unit() * (simple_ ? 0.7 : 1.0);
+    const double r = size(), kind = random_.unit() * (solids_ == Solids::all ? 1.0 : 0.7);
+    if (solids_ == Solids::shapes && random_.unit() < 0.4) return exact(e, c);
     if (kind < 0.25) {
       add(e, SpheresShape{{{c, r}}}, {});
       return [c, r](const Vec3l& p) {
@@ -146,7 +154,8 @@ class TreeMaker {
     do
       oracle =
           draw_exact_oracle(static_cast<std::size_t>(random_.unit() * static_cast<double>(forms)), random_);
-    while (oracle.where || (simple_ && !exact_ops(kind_of(oracle.shape.form)).lists_at_once()));
+    while (oracle.where ||
+           (solids_ == Solids::primitives && !exact_ops(kind_of(oracle.shape.form)).lists_at_once()));
     return placed(e, oracle, turned_to(c));
   }
 
@@ -157,7 +166,7 @@ class TreeMaker {
 
   CaseRandom& random_;
   const bool coarse_;
-  const bool simple_;  ///< of primitives only, which go through the tree several rays at once
+  const Solids solids_;
   const TriangleMesh *ball_, *cube_;
 };
 
