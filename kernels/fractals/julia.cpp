@@ -7,15 +7,20 @@ namespace {
 
 /// Halvings of the box that is looked at for bounds.
 constexpr int kBoundLevels = 6;
+/// Cells along the longest side of the bounds.
+constexpr double kCellsAlong = 64;
+/// Time to look for crossings in a cell, in units of that to visit a node.
+constexpr double kJuliaCellCost = 60;
 
-/// Whether the whole ball about p surely leaves.
-bool escapes(const JuliaElement& e, const Vec3d& p, double radius) {
+/// Bounds on |z_n|^2 - R^2 in the ball about p, but for the sign of unknown size.
+CellRange range_in(const JuliaElement& e, const Vec3d& p, double radius) {
   JuliaNumber<double> z{p.x, p.y, p.z, e.slice};
   double eps = radius * (1 + 0x1p-40);
   for (int n = 0;; ++n) {
     const double zz = z.norm2(), length = std::sqrt(zz);
-    if (length - eps > e.radius * (1 + 0x1p-40)) return true;
-    if (n == e.iterations || !(eps < 1e6)) return false;
+    if (length - eps > e.radius * (1 + 0x1p-40)) return {1, 1};
+    if (!(eps < 1e6)) return {-1, 1};
+    if (n == e.iterations) return {-1, length + eps < e.radius * (1 - 0x1p-40) ? -1.0 : 1.0};
     const double factor = e.product(),
                  of_power = e.power == 2 ? factor * (2 * length + eps)
                                          : factor * factor * (3 * zz + 3 * length * eps + eps * eps);
@@ -23,6 +28,24 @@ bool escapes(const JuliaElement& e, const Vec3d& p, double radius) {
     z = z.next(e);
   }
 }
+
+bool escapes(const JuliaElement& e, const Vec3d& p, double radius) { return range_in(e, p, radius).lo > 0; }
+
+class JuliaRule : public CellRule {
+ public:
+  explicit JuliaRule(const JuliaElement& e) : element_(e) {}
+
+  CellRange narrow(const CellBox& box, std::span<const std::uint32_t> part,
+                   std::vector<std::uint32_t>& out) const override {
+    out.assign(part.begin(), part.end());
+    return range_in(element_, (box.lo + box.hi) * 0.5, 0.5 * length(box.hi - box.lo));
+  }
+  double least_size(std::span<const std::uint32_t>) const override { return element_.size / kCellsAlong; }
+  double cost(std::span<const std::uint32_t>) const override { return kJuliaCellCost; }
+
+ private:
+  const JuliaElement& element_;
+};
 
 void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int levels, Vec3d& lo, Vec3d& hi) {
   bool known = true;
@@ -48,18 +71,22 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   const double radius = 0.5 * (1 + std::sqrt(1 + 4 * size));
   // A radius that is too small, too great or no number leaves that of the formula.
   const double escape = s.escape > radius && s.escape <= JuliaShape::kMostEscape ? s.escape : radius;
-  const JuliaElement e{{s.c[0], s.c[1], s.c[2], s.c[3]},
-                       s.slice,
-                       escape,
-                       static_cast<int>(s.iterations),
-                       static_cast<int>(s.power),
-                       s.algebra == JuliaShape::Algebra::hypercomplex};
+  JuliaElement e{{s.c[0], s.c[1], s.c[2], s.c[3]},
+                 s.slice,
+                 escape,
+                 static_cast<int>(s.iterations),
+                 static_cast<int>(s.power),
+                 s.algebra == JuliaShape::Algebra::hypercomplex,
+                 0};
   const double inf = std::numeric_limits<double>::infinity();
   Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
   grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);
   if (!(lo.x < hi.x)) return;
+  e.size = max_component(hi - lo);
+  const auto element = static_cast<std::uint32_t>(pool.elements.size());
+  const std::uint32_t all[1] = {0};
+  pool.tree.divide(JuliaRule(e), {lo, hi}, all, element, pool.cells);
   add_element(pool, e, place.to_world, place);
-  add_cell(pool, lo, hi);
 }
 
 }  // namespace oktett

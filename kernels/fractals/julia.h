@@ -14,7 +14,11 @@
 /// complex ones u and v, multiplied one by one, with |q|^2 = (|u|^2 + |v|^2) / 2: there K is the root of 2,
 /// and |q^p| >= |q|^p, so that R is the same. A piece of which all has |z_k| > R for some k is outside. So no
 /// estimate of a distance is trusted, and no step is made that is not proved.
+///
+/// The same bounds over balls divide the space into cells, of which those surely outside or inside are left
+/// out.
 
+#include "kernels/exact/cell_tree.h"
 #include "kernels/exact/march.h"
 #include "kernels/fractals/julia_data.h"
 
@@ -27,6 +31,7 @@ struct JuliaElement {
   int iterations;
   int power;
   bool hypercomplex;
+  double size;  ///< of the box about all cells
 
   /// |ab| <= product() |a| |b|.
   double product() const { return hypercomplex ? 1.4142135623730952 : 1.0; }
@@ -94,6 +99,10 @@ struct JuliaField {
 
   using Number = JuliaNumber<D>;
 
+  double sum_of_c() const {
+    return std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
+  }
+
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
@@ -105,7 +114,7 @@ struct JuliaField {
     auto escaped = m == m;
     escaped = escaped & ~escaped;
     auto lost = escaped;
-    const D cc(std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]));
+    const D cc(sum_of_c());
     for (int n = 0; n <= e.iterations; ++n) {
       const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
       const auto leaves = ~escaped & ~lost & (length - r > radius);
@@ -142,13 +151,48 @@ struct JuliaField {
     const D m = s.lo + (s.hi - s.lo) * D(0.5);
     return about(m, max(s.hi - m, m - s.lo) * D(1 + 0x1p-50));
   }
-  OKTETT_INLINE Interval<D> at(const D& s) const { return about(s, D(0.0)).v; }
+  /// The value of about(s, 0), without the derivative and what it takes.
+  OKTETT_INLINE Interval<D> at(const D& s) const {
+    const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
+        radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
+    Number z{o.x + s * d.x, o.y + s * d.y, o.z + s * d.z, D(e.slice)};
+    const D far = sqrt((o.x * o.x + o.y * o.y) + o.z * o.z), cc(sum_of_c());
+    D zz = z.norm2(), length = sqrt(zz), eps = u * (far + length), escaped_by = zero;
+    auto escaped = s == s;
+    escaped = escaped & ~escaped;
+    auto lost = escaped;
+    for (int n = 0;; ++n) {
+      const auto leaves = ~escaped & ~lost & (length - eps > radius);
+      escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
+      lost = lost | ~(length + eps < D(kHuge));
+      const auto stays = ~(escaped | lost);
+      if (n == e.iterations || none(stays)) break;
+      const D grown = e.power == 2
+                          ? product * (two * length * eps + eps * eps) + u * (zz + cc)
+                          : product * product * (three * zz * eps + (three * length + eps) * (eps * eps)) +
+                                u * (zz * length + cc);
+      eps = select(stays, grown, eps);
+      z.set(stays, z.next(e));
+      zz = z.norm2(), length = sqrt(zz);
+    }
+    const D value = zz - limit, off = two * length * eps + u * (zz + limit), huge(kHuge * kHuge);
+    const auto told = ~(escaped | lost);
+    const D low = select(told, value - off, select(escaped, escaped_by * D(1 - 0x1p-40), -huge));
+    return {low, select(told, value + off + eps * eps, select(escaped, max(escaped_by, low), huge))};
+  }
+};
+
+struct JuliaPool : ExactPool<JuliaElement> {
+  CellTree tree;
+  std::size_t bytes() const { return ExactPool::bytes() + tree.bytes(); }
 };
 
 struct Julia {
   using Data = JuliaShape;
-  using Pool = ExactPool<JuliaElement>;
+  using Pool = JuliaPool;
   static constexpr int kMaxCrossings = 16;
+  /// Rays that were mirrored or bent are rarely in one cell, and square roots of many lanes take long.
+  static constexpr bool kLoneLanes = true;
 
   static void add(Pool& pool, const JuliaShape& shape, const ExactPlace& place);
 
@@ -157,10 +201,11 @@ struct Julia {
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
     const JuliaElement& e = pool.elements[cell.element];
     const D zero(0.0), length = range.b - range.a;
+    const D whole = D(e.size) / sqrt(dot_lanes(line.d, line.d));
     const auto place = [&](const D& o, const D& d) { return o + range.a * d; };
     const JuliaField<D> field{
         e, {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)}, line.d};
-    interval::march<K>(field, zero, length, length, active, interval::Jumps::list, out);
+    interval::march<K>(field, zero, length, length, max(length, whole), active, interval::Jumps::list, out);
     place_crossings(out, [&](const D& s) { return range.a + s; });
     for (D& part : out.part) part = D(0.0);
   }

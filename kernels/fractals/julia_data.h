@@ -27,7 +27,8 @@ struct JuliaShape {
   std::uint32_t power = 2;
   double escape = 0;
 
-  static constexpr ShapeInfo kShapeInfo{"julia", "a slice of the Julia set of q² + c in the quaternions"};
+  static constexpr ShapeInfo kShapeInfo{
+      "julia", "a slice of the Julia set of q² + c or q³ + c in the quaternions or hypercomplex numbers"};
   void describe(auto& p) {
     p.field("c", c, "the quaternion that is added; \\|c\\| <= 2");
     const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
