@@ -78,33 +78,38 @@ bool is_straight(const OutlinePiece& piece) {
   return true;
 }
 
-/// Bernstein coefficients at s by de Casteljau's scheme; exact at 0 and 1.
-double bernstein(const double (&b)[4], int degree, double s) {
-  double c[4] = {b[0], b[1], b[2], b[3]};
-  const double r = 1 - s;
-  for (int k = degree; k > 0; --k)
-    for (int i = 0; i < k; ++i) c[i] = r * c[i] + s * c[i + 1];
-  return c[0];
-}
+struct ValueAndSlope {
+  double value, slope;
+};
 
-/// The slope, up to the degree as a factor.
-double bernstein_slope(const double (&b)[4], int degree, double s) {
-  double d[4] = {};
-  for (int i = 0; i < degree; ++i) d[i] = b[i + 1] - b[i];
-  return degree * bernstein(d, degree - 1, s);
+/// The polynomial with Bernstein coefficients b at s by de Casteljau's scheme; exact at 0 and 1.
+ValueAndSlope bernstein(const double (&b)[4], int degree, double s) {
+  const double r = 1 - s;
+  double c0 = r * b[0] + s * b[1], c1 = r * b[1] + s * b[2];
+  if (degree == 3) {
+    const double c2 = r * b[2] + s * b[3];
+    c0 = r * c0 + s * c1, c1 = r * c1 + s * c2;
+  }
+  return {r * c0 + s * c1, degree * (c1 - c0)};
 }
 
 /// The only change of sign between lo and hi, at which the signs differ: Newton's method, kept between them.
 double root_between(const double (&b)[4], int degree, double lo, double hi, double at_lo, double at_hi) {
   const bool rises = at_lo < 0;
+  // A bound on the second derivative.
+  double bend = std::abs((b[2] - b[1]) - (b[1] - b[0]));
+  if (degree == 3) bend = std::max(bend, std::abs((b[3] - b[2]) - (b[2] - b[1])));
+  bend *= degree * (degree - 1);
   double s = lo + (hi - lo) * (at_lo / (at_lo - at_hi));
   for (int i = 0; i < 80; ++i) {
     if (!(s > lo && s < hi)) s = lo + 0.5 * (hi - lo);
     if (!(s > lo && s < hi)) return s;
-    const double value = bernstein(b, degree, s);
+    const auto [value, slope] = bernstein(b, degree, s);
     ((value < 0) == rises ? lo : hi) = s;
-    const double step = value / bernstein_slope(b, degree, s);
+    const double step = value / slope;
     if (std::abs(step) <= 0x1p-54 * s) return s;
+    // What is left after this step is less than step^2 bend / |slope|.
+    if (step * step * bend <= 0x1p-55 * s * std::abs(slope)) return std::clamp(s - step, lo, hi);
     // A step to where it has been halves what is left next.
     s -= step;
   }
@@ -391,7 +396,8 @@ void OutlineSet::find_roots(const PlaneLine& line, std::span<const std::uint32_t
     double cut[4] = {0}, value[4] = {b[0]}, turning[2];
     int n = 1;
     const int turns = turning_places(b, piece.degree, turning);
-    for (int i = 0; i < turns; ++i) cut[n] = turning[i], value[n++] = bernstein(b, piece.degree, turning[i]);
+    for (int i = 0; i < turns; ++i)
+      cut[n] = turning[i], value[n++] = bernstein(b, piece.degree, turning[i]).value;
     cut[n] = 1, value[n++] = b[piece.degree];
     for (int i = 0; i + 1 < n; ++i)
       if ((value[i] < 0) != (value[i + 1] < 0))
