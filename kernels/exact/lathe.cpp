@@ -64,33 +64,52 @@ struct CurvePoint {
   std::size_t piece = 0;
   double v = 0, distance2 = HUGE_VAL;
 };
-CurvePoint nearest_point(const LatheElement& e, double rho, double y) {
-  CurvePoint best;
-  for (std::size_t k = 0; k < e.pieces.size(); ++k) {
-    const Piece& p = e.pieces[k];
-    const double dy = std::max({p.least_y - y, y - p.greatest_y, 0.0}), dr = std::max(rho - p.most, 0.0);
-    if (dy * dy + dr * dr > best.distance2) continue;
-    constexpr int kSteps = 8;
-    double start = 0, least = HUGE_VAL;
-    for (int i = 0; i <= kSteps; ++i) {
-      const double v = -1 + 2.0 * i / kSteps, a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
-      if (a * a + b * b < least) least = a * a + b * b, start = v;
-    }
-    double v = start;
-    for (int i = 0; i < 8; ++i) {
-      const double a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
-      const double da = cubic_slope(p.r, v), db = cubic_slope(p.y, v);
-      const double slope = a * da + b * db, speed = da * da + db * db;
-      const double curve = speed + a * cubic_curve(p.r, v) + b * cubic_curve(p.y, v);
-      const double step = slope / (curve > 0.25 * speed ? curve : speed);
-      if (!std::isfinite(step)) break;
-      v = std::clamp(v - std::clamp(step, -0.25, 0.25), -1.0, 1.0);
-    }
-    for (const double w : {start, v}) {
-      const double a = cubic(p.r, w) - rho, b = cubic(p.y, w) - y;
-      if (a * a + b * b < best.distance2) best = {k, w, a * a + b * b};
-    }
+
+/// The square of the distance of (rho, y) from the bounds of a piece.
+double bounds_distance2(const Piece& p, double rho, double y) {
+  const double dy = std::max({p.least_y - y, y - p.greatest_y, 0.0}), dr = std::max(rho - p.most, 0.0);
+  return dy * dy + dr * dr;
+}
+
+/// Takes the nearest point of piece `k` if it is nearer, or as near and on an earlier piece.
+void keep_nearest(const LatheElement& e, std::size_t k, double rho, double y, CurvePoint& best) {
+  const Piece& p = e.pieces[k];
+  constexpr int kSteps = 8;
+  double start = 0, least = HUGE_VAL;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double v = -1 + 2.0 * i / kSteps, a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
+    if (a * a + b * b < least) least = a * a + b * b, start = v;
   }
+  double v = start;
+  for (int i = 0; i < 8; ++i) {
+    const double a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
+    const double da = cubic_slope(p.r, v), db = cubic_slope(p.y, v);
+    const double slope = a * da + b * db, speed = da * da + db * db;
+    const double curve = speed + a * cubic_curve(p.r, v) + b * cubic_curve(p.y, v);
+    const double step = slope / (curve > 0.25 * speed ? curve : speed);
+    if (!std::isfinite(step)) break;
+    const double before = v;
+    v = std::clamp(v - std::clamp(step, -0.25, 0.25), -1.0, 1.0);
+    if (v == before) break;
+  }
+  for (const double w : {start, v}) {
+    const double a = cubic(p.r, w) - rho, b = cubic(p.y, w) - y, distance2 = a * a + b * b;
+    if (distance2 < best.distance2 || (distance2 == best.distance2 && k < best.piece))
+      best = {k, w, distance2};
+  }
+}
+
+/// Begins with the piece whose bounds are nearest, so that most others need not be looked at.
+CurvePoint nearest_point(const LatheElement& e, double rho, double y) {
+  std::size_t first = 0;
+  double least = HUGE_VAL;
+  for (std::size_t k = 0; k < e.pieces.size(); ++k)
+    if (const double d = bounds_distance2(e.pieces[k], rho, y); d < least) least = d, first = k;
+  CurvePoint best;
+  keep_nearest(e, first, rho, y, best);
+  for (std::size_t k = 0; k < e.pieces.size(); ++k)
+    if (k != first && bounds_distance2(e.pieces[k], rho, y) <= best.distance2)
+      keep_nearest(e, k, rho, y, best);
   return best;
 }
 
