@@ -1,6 +1,7 @@
 #include "core/noise.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/random.h"
 
@@ -16,6 +17,19 @@ std::uint64_t lattice_bits(std::int64_t x, std::int64_t y, std::int64_t z) {
 
 namespace {
 
+/// A coordinate as the integer below it and what it is above that; with 0 and NaN where it is not finite.
+struct CellCoordinate {
+  std::int64_t cell;
+  double fraction;
+};
+CellCoordinate split(double x) {
+  if (!(std::abs(x) < 0x1p51)) return {cell_of(x), fraction_of(x)};
+  const auto whole = static_cast<std::int64_t>(x);
+  const double off = static_cast<double>(whole) > x ? 1 : 0, floor = static_cast<double>(whole) - off;
+  // Not -0.
+  return {whole - static_cast<std::int64_t>(off), (x - floor) + 0.0};
+}
+
 /// Where a corner of a cell lies in the cell: bit k of its number is its coordinate k.
 Vec3d corner_place(int i) {
   return {static_cast<double>(i & 1), static_cast<double>(i >> 1 & 1), static_cast<double>(i >> 2)};
@@ -24,20 +38,25 @@ Vec3d corner_place(int i) {
 /// The scalar product of `d` with the gradient of a lattice point: one of the twelve vectors to the middles
 /// of the edges of a cube.
 double edge_product(std::uint64_t bits, const Vec3d& d) {
-  const double a = bits & 1 ? -1 : 1, b = bits & 2 ? -1 : 1;
-  switch ((bits >> 32) % 3) {
-    case 0:
-      return a * d.x + b * d.y;
-    case 1:
-      return a * d.y + b * d.z;
-    default:
-      return a * d.z + b * d.x;
-  }
+  // Without branches, which nothing could predict.
+  const double part[4] = {d.x, d.y, d.z, d.x};
+  const std::uint64_t k = (bits >> 32) % 3;
+  const auto turned = [](double x, std::uint64_t sign) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ sign << 63);
+  };
+  return turned(part[k], bits & 1) + turned(part[k + 1], bits >> 1 & 1);
 }
 
-/// The random bits of the corners of a cell.
+/// lattice_bits of the corners of a cell; neighbours have their first steps in common.
 void corner_bits(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t (&bits)[8]) {
-  for (int i = 0; i < 8; ++i) bits[i] = lattice_bits(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
+  const auto next = [](std::uint64_t from, std::int64_t coordinate, int step) {
+    return mix_bits(from + (static_cast<std::uint64_t>(coordinate) + static_cast<std::uint64_t>(step)) +
+                    kGoldenBits);
+  };
+  std::uint64_t of_x[2], of_xy[4];
+  for (int i = 0; i < 2; ++i) of_x[i] = next(0, x, i);
+  for (int i = 0; i < 4; ++i) of_xy[i] = next(of_x[i & 1], y, i >> 1);
+  for (int i = 0; i < 8; ++i) bits[i] = next(of_xy[i & 3], z, i >> 2);
 }
 
 /// That vector itself.
@@ -74,8 +93,9 @@ T between_edges(int axis, const T (&t)[3], const Rise& rise) {
 /// A point's place in its cell, the random bits and the products of the cell's corners.
 struct Place {
   explicit Place(const Vec3d& p) {
-    corner_bits(cell_of(p.x), cell_of(p.y), cell_of(p.z), bits);
-    f = {fraction_of(p.x), fraction_of(p.y), fraction_of(p.z)};
+    const CellCoordinate x = split(p.x), y = split(p.y), z = split(p.z);
+    corner_bits(x.cell, y.cell, z.cell, bits);
+    f = {x.fraction, y.fraction, z.fraction};
     for (int i = 0; i < 8; ++i) corner[i] = edge_product(bits[i], f - corner_place(i));
     for (int k = 0; k < 3; ++k) t[k] = fade(f[k]);
   }
