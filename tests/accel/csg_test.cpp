@@ -376,6 +376,25 @@ TEST(Csg, RaysAlongEndlessOperandsAreInside) {
   near(crossings(*bored, {{0, -4, 0}, 0, {0, 1, 0}, kInfinity}), {4 - r, 3.5f, 4.5f, 4 + r});
 }
 
+/// Rays that begin inside of an operand whose surface lies beyond their ends, many at once: of its inside
+/// there is no cell.
+TEST(Csg, RaysMayEndInsideOfAnOperand) {
+  const Geometry blob = solid(ExactShape{MetaballsShape{0.5, {{{0, 0, 0}, 20, 1}}}}, 0);
+  const auto half = built(whole(combine(CsgOp::intersect, {blob, cube({1, -9, -9}, {30, 9, 9}, 1)})));
+  RayBatch rays;
+  for (int i = 0; i < 32; ++i)
+    rays.push_back(
+        {{0, 0.1f * static_cast<float>(i % 8), 0.1f * static_cast<float>(i / 8)}, 0, {1, 0, 0}, 2});
+  for (const Isa isa : available_isas()) {
+    HitBatch hits;
+    hits.resize_uninitialized(rays.size());
+    closest_hit(*half, rays.span(), hits.span(), isa);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      EXPECT_EQ(hits[i].t, 1) << to_string(isa) << " " << i;
+    }
+  }
+}
+
 TEST(Csg, DegenerateCombinationsAreNothing) {
   const Ray ray = ray_along_x();
   EXPECT_EQ(crossings(*built(whole({})), ray), Distances{});

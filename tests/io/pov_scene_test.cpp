@@ -148,6 +148,24 @@ TEST(PovScene, PolynomialsAreCutAtWhatBoundsThem) {
   EXPECT_NE(text.find("bounds: {min: [-2.04"), std::string::npos) << text;
 }
 
+/// What has a bounded zero set is bounded by that; x^2 + x z - 1 goes on for ever. The sphere of radius 2
+/// lies in the box that is found, and this is less than a tenth larger.
+TEST(PovScene, PolynomialsWithoutBoundsGetSomeIfTheyHaveAny) {
+  const PovFiles files;
+  const std::string ball = files.object(
+      "#version 3.7;\nquartic { <1,0,0,0,2,0,0,2,0,0, 0,0,0,0,0,0,0,0,0,0, "
+      "1,0,0,2,0,0,0,0,0,0, 1,0,0,0,-16> }");
+  double lo = 0, hi = 0;
+  const std::size_t at = ball.find("bounds: {min: [");
+  ASSERT_NE(at, std::string::npos) << ball;
+  ASSERT_EQ(std::sscanf(ball.c_str() + at, "bounds: {min: [%lf, %*f, %*f], max: [%lf", &lo, &hi), 2) << ball;
+  EXPECT_TRUE(-2.2 < lo && lo <= -2 && 2 <= hi && hi < 2.2) << ball;
+  const std::string endless =
+      files.object("#version 3.7;\ncubic { <0,0,0,1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,-1> }");
+  EXPECT_NE(endless.find("bounds: {min: [-1000, -1000, -1000], max: [1000, 1000, 1000]}"), std::string::npos)
+      << endless;
+}
+
 TEST(PovScene, TransformsKeepTheirOrder) {
   expect_objects({
       {"sphere { 0, 1 scale 2 rotate y*30 translate x }",

@@ -11,6 +11,7 @@
 #include "io/pov/translate/blobs.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/meshes.h"
+#include "io/pov/translate/polynomials.h"
 #include "io/pov/translate/sweeps.h"
 #include "kernels/exact/lathe.h"
 #include "kernels/exact/revolution.h"
@@ -18,9 +19,6 @@
 
 namespace oktett::pov {
 namespace {
-
-/// Half the edge of the box in which a polynomial surface is seen that nothing else bounds.
-constexpr double kReach = 1000;
 
 class ShapeMaker {
  public:
@@ -42,9 +40,9 @@ class ShapeMaker {
     if (k == "disc") return disc();
     if (k == "torus") return torus();
     if (k == "quadric") return quadric();
-    if (k == "cubic") return polynomial(3);
-    if (k == "quartic") return polynomial(4);
-    if (k == "poly") return polynomial(0);
+    if (k == "cubic") return make_polynomial(context_, a_, 3, within_, operand_);
+    if (k == "quartic") return make_polynomial(context_, a_, 4, within_, operand_);
+    if (k == "poly") return make_polynomial(context_, a_, 0, within_, operand_);
     if (k == "superellipsoid") return superellipsoid();
     if (k == "blob") return make_blob(context_, a_);
     if (k == "lathe") return lathe();
@@ -170,45 +168,6 @@ class ShapeMaker {
   }
 
   /// Of a degree, 0: the first argument.
-  std::optional<Shapes> polynomial(int degree) {
-    if (degree == 0) degree = static_cast<int>(a_.number("the order"));
-    const std::vector<double> c = a_.all_numbers();
-    const auto n = static_cast<std::size_t>(degree);
-    if (degree < 2 || degree > 35 || c.size() != (n + 1) * (n + 2) * (n + 3) / 6)
-      context_.fail(where_, fmt::format("a polynomial of order {} has {} coefficients, found {}", degree,
-                                        (n + 1) * (n + 2) * (n + 3) / 6, c.size()));
-    if (degree > 32) return left_out("polynomials here have at most degree 32");
-    std::string text;
-    std::size_t i = 0;
-    for (int x = degree; x >= 0; --x)
-      for (int y = degree - x; y >= 0; --y)
-        for (int z = degree - x - y; z >= 0; --z) {
-          const double value = c[i++];
-          if (value == 0) continue;
-          text += fmt::format("{}{}",
-                              text.empty() ? (value < 0 ? "-" : "")
-                              : value < 0  ? " - "
-                                           : " + ",
-                              std::abs(value));
-          for (const auto& [name, power] : {std::pair{"x", x}, std::pair{"y", y}, std::pair{"z", z}})
-            if (power > 0) text += power == 1 ? fmt::format("*{}", name) : fmt::format("*{}^{}", name, power);
-        }
-    if (text.find_first_of("xyz") == std::string::npos) return left_out("the polynomial is constant");
-    const Node keys = map();
-    tree_.put(keys, "equation", tree_.text(where_, text));
-    Extent box = within_;
-    if (!box.is_finite()) {
-      box = {{-kReach, -kReach, -kReach}, {kReach, kReach, kReach}};
-    } else {
-      // The faces of the bounds lie outside of what bounds it.
-      const Vec3d room = (box.hi - box.lo) * 0.01 + Vec3d{1e-6, 1e-6, 1e-6};
-      box.lo = box.lo - room, box.hi = box.hi + room;
-    }
-    put_bounds(keys, box.lo, box.hi);
-    if (!operand_) tree_.put(keys, "open", tree_.flag(where_, true));
-    return one("polynomial", keys, operand_);
-  }
-
   Shapes superellipsoid() {
     const auto e = a_.pair("two exponents");
     if (e[0] == e[1]) {
