@@ -99,6 +99,10 @@ struct JuliaField {
 
   using Number = JuliaNumber<D>;
 
+  /// A little more than the root: roots of floats take a third of the time of those of doubles.
+  static OKTETT_INLINE D root_above(const D& square) {
+    return to_double(sqrt(to_float(square))) * D(1 + 0x1p-22) + D(0x1p-62);
+  }
   double sum_of_c() const {
     return std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
   }
@@ -109,15 +113,16 @@ struct JuliaField {
     const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
         radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
     Number z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
-    const D far = sqrt((o.x * o.x + o.y * o.y) + o.z * o.z);
-    D eps = u * (far + sqrt(z.norm2())), phi = zero, escaped_by = zero;
+    const D far = root_above((o.x * o.x + o.y * o.y) + o.z * o.z);
+    D eps = u * (far + root_above(z.norm2())), phi = zero, escaped_by = zero;
     auto escaped = m == m;
     escaped = escaped & ~escaped;
     auto lost = escaped;
     const D cc(sum_of_c());
     for (int n = 0; n <= e.iterations; ++n) {
-      const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
-      const auto leaves = ~escaped & ~lost & (length - r > radius);
+      const D zz = z.norm2(), length = root_above(zz), slope = root_above(w.norm2());
+      const D r = slope * half + eps, out = radius + r;
+      const auto leaves = ~escaped & ~lost & (zz > out * out);
       escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
       lost = lost | ~(length + r + slope + phi < D(kHuge));
       const auto stays = ~(escaped | lost);
@@ -136,7 +141,7 @@ struct JuliaField {
       }
       w.set(stays, z.next_slope(e, w)), z.set(stays, z.next(e));
     }
-    const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
+    const D zz = z.norm2(), length = root_above(zz), slope = root_above(w.norm2()), r = slope * half + eps;
     const D by_h = z.twice_along(w);
     const D off = abs(by_h) * half + two * length * eps + u * (zz + limit) + u * length * slope * half;
     const D turn = two * (slope * r + (length + r) * phi) + u * length * slope;
@@ -156,13 +161,14 @@ struct JuliaField {
     const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
         radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
     Number z{o.x + s * d.x, o.y + s * d.y, o.z + s * d.z, D(e.slice)};
-    const D far = sqrt((o.x * o.x + o.y * o.y) + o.z * o.z), cc(sum_of_c());
-    D zz = z.norm2(), length = sqrt(zz), eps = u * (far + length), escaped_by = zero;
+    const D far = root_above((o.x * o.x + o.y * o.y) + o.z * o.z), cc(sum_of_c());
+    D zz = z.norm2(), length = root_above(zz), eps = u * (far + length), escaped_by = zero;
     auto escaped = s == s;
     escaped = escaped & ~escaped;
     auto lost = escaped;
     for (int n = 0;; ++n) {
-      const auto leaves = ~escaped & ~lost & (length - eps > radius);
+      const D out = radius + eps;
+      const auto leaves = ~escaped & ~lost & (zz > out * out);
       escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
       lost = lost | ~(length + eps < D(kHuge));
       const auto stays = ~(escaped | lost);
@@ -173,7 +179,7 @@ struct JuliaField {
                                 u * (zz * length + cc);
       eps = select(stays, grown, eps);
       z.set(stays, z.next(e));
-      zz = z.norm2(), length = sqrt(zz);
+      zz = z.norm2(), length = root_above(zz);
     }
     const D value = zz - limit, off = two * length * eps + u * (zz + limit), huge(kHuge * kHuge);
     const auto told = ~(escaped | lost);
