@@ -264,6 +264,8 @@ bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, ShapeHits& 
     const auto& pool = static_cast<const typename S::Pool&>(base);
     const std::size_t element = hits.element[0];
     if (pool.frames[element].normals != NormalMethod::gradient) return false;
+    if constexpr (requires { S::is_smooth(pool, element); })
+      if (S::is_smooth(pool, element)) return false;
     for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
       const PickedLanes<Floats> ray(hits.ray + i);
       const HitPoints<D> hit(hits, ray);

@@ -86,6 +86,13 @@ SurfaceInteraction exact_interaction(const typename S::Pool& pool, std::size_t i
   SurfaceInteraction s;
   set_position(s, only_lane(at.point), ray, hit.t, only_lane(at.error));
   s.geometric_normal = s.shading_normal = Vec3f(only_lane(at.normal));
+  if constexpr (requires { S::is_smooth(pool, i); }) {
+    if (S::is_smooth(pool, i)) {
+      const Vec3d g = S::smooth_gradient(pool, i, static_cast<int>(hit.u), only_lane(own));
+      const Vec3d n = pool.frames[i].to_own.normal_by_inverse(g);
+      if (const double l = length(n); l > 0 && std::isfinite(l)) s.shading_normal = Vec3f(n / l);
+    }
+  }
   if constexpr (kWithUv) {
     if constexpr (requires { S::uv(pool, i, 0, Vec3d{}); }) {
       const int part = static_cast<int>(hit.u);

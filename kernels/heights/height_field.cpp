@@ -27,6 +27,7 @@ void HeightField::add(Pool& pool, const HeightFieldShape& s, const ExactPlace& p
 
   HeightFieldElement e;
   e.keep = s.grid, e.grid = s.grid.get(), e.walk = s.walk, e.solid = !s.open;
+  e.smooth = s.smooth && grid.interpolation() != HeightInterpolation::nearest;
   const double half_x = s.size.x * 0.5 / size, half_z = s.size.z * 0.5 / size;
   const auto cells = [](std::uint32_t samples) { return static_cast<double>(samples) - 1; };
   e.frame.scale = {cells(grid.columns()) / (2 * half_x), size / unit, cells(grid.rows()) / (2 * half_z)};
@@ -48,6 +49,31 @@ bool height::below_rim(const HeightGrid& grid, int face, double x, double y, dou
   if (face >= 5) z = face == 5 ? 0 : static_cast<double>(grid.rows()) - 1;
   using D = Simd<double, 1, ScalarIsa>;
   return y < only_lane(HeightPatch<D>(grid, D(x), D(z)).height);
+}
+
+Vec3d HeightField::smooth_gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  if (part > 0) return slope_at<HeightField>(pool, i, part, p).gradient;
+  const HeightFieldElement& e = pool.elements[i];
+  const HeightGrid& grid = *e.grid;
+  // By column and row; on the border what rises from or to the only neighbour.
+  const auto rises = [&](std::uint32_t x, std::uint32_t z) {
+    const std::uint32_t x0 = x > 0 ? x - 1 : x, x1 = x + 1 < grid.columns() ? x + 1 : x;
+    const std::uint32_t z0 = z > 0 ? z - 1 : z, z1 = z + 1 < grid.rows() ? z + 1 : z;
+    return Vec3d{(grid.at(x1, z) - grid.at(x0, z)) / (x1 - x0), 0,
+                 (grid.at(x, z1) - grid.at(x, z0)) / (z1 - z0)};
+  };
+  const auto place = [](double at, std::uint32_t samples, double& share) {
+    const double cell = std::clamp(std::floor(at), 0.0, static_cast<double>(samples) - 2);
+    share = std::clamp(at - cell, 0.0, 1.0);
+    return static_cast<std::uint32_t>(cell);
+  };
+  double u, v;
+  const std::uint32_t x = place(p.x * e.frame.scale.x + e.frame.shift.x, grid.columns(), u);
+  const std::uint32_t z = place(p.z * e.frame.scale.z + e.frame.shift.z, grid.rows(), v);
+  const Vec3d near = rises(x, z) * (1 - u) + rises(x + 1, z) * u,
+              far = rises(x, z + 1) * (1 - u) + rises(x + 1, z + 1) * u, mean = near * (1 - v) + far * v;
+  const Vec3d& scale = e.frame.scale;
+  return {-mean.x * (scale.x / scale.y), 1, -mean.z * (scale.z / scale.y)};
 }
 
 bool HeightField::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

@@ -14,7 +14,7 @@ struct HeightFieldElement {
   HeightFrame frame;  ///< from the own space to the grid
   double margin;      ///< what the heights are bounded by is so far from them, in samples as stored
   HeightWalk walk;
-  bool solid;
+  bool solid, smooth;
   Vec3d lo, hi;  ///< the box: of a solid, its lower face is the bottom
 };
 
@@ -143,6 +143,10 @@ struct HeightField {
     wall(kWallLowX, 0, p.x, -1), wall(kWallHighX, 0, p.x, 1);
     wall(kWallLowZ, 2, p.z, -1), wall(kWallHighZ, 2, p.z, 1);
   }
+  static bool is_smooth(const Pool& pool, std::size_t i) { return pool.elements[i].smooth; }
+  /// The gradient that light falls by where a smooth field is hit at p: at a sample that of the heights of
+  /// its neighbours, and between four samples the mean of theirs.
+  static Vec3d smooth_gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Below the surface and above the bottom of a solid; nothing is inside of an open surface.
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u from the first column to the last, v from the last row to the first, as in an image that is looked at

@@ -37,6 +37,8 @@ struct HeightFieldShape {
   HeightWalk walk = HeightWalk::pyramid;
   /// The interpolation of the scene file, for which `grid` was made.
   HeightInterpolation interpolation = HeightInterpolation::bilinear;
+  /// Shades with normals of the samples, by the heights of their neighbours; not `nearest`.
+  bool smooth = false;
   /// In scene files, whether `grid` is made from the numbers of the colours of a palette.
   bool palette = false;
 
@@ -62,6 +64,11 @@ struct HeightFieldShape {
               {"triangles", HeightInterpolation::triangles},
               {"bilinear", HeightInterpolation::bilinear}},
              "what is between four samples; `nearest` makes level steps");
+    p.field("smooth", smooth,
+            "whether light falls as if it were curved, by normals at the samples and between them; not with "
+            "`nearest`");
+    p.check(!smooth || interpolation != HeightInterpolation::nearest, "smooth",
+            "steps cannot be smooth: `nearest` has no 'smooth'");
     open &=
         !p.optional("base", base, kCoordinate,
                     "a y below all heights, which makes it a solid with upright sides and a bottom there");

@@ -52,6 +52,34 @@ TEST(HeightFields, KnownCrossings) {
   expect_at(steps, {-2, 0.5f, 0.5f}, {1, -0.125f, 0}, {2});
 }
 
+/// Samples of x^2 / 8, whose differences between the neighbours of a sample are its slope x / 4: so is that
+/// between them, for light; the faces themselves stay flat. Alone and in groups, moved and stretched.
+TEST(HeightFields, SmoothOnesShadeAsIfTheyWereCurved) {
+  std::vector<float> samples;
+  for (int row = 0; row < 3; ++row)
+    for (int i = -4; i <= 4; ++i) samples.push_back(static_cast<float>(i * i) / 8);
+  for (const Interpolation interpolation : {Interpolation::triangles, Interpolation::bilinear})
+    for (const double stretch : {1.0, 2.5}) {
+      HeightFieldShape shape = height_field(9, 3, samples, interpolation);
+      shape.smooth = true;
+      const auto accel = build_accel(
+          {{ExactShape{shape}, Affine::translation({0, 1, 0}) * Affine::scaling({stretch, 1, 1})}});
+      RayBatch rays;
+      for (int i = 0; i < 16; ++i)
+        rays.push_back({{static_cast<float>((-2.9 + 0.37 * i) * stretch), 20, 0.3f}, 0, {0, -1, 0}, kInf});
+      HitBatch hits;
+      hits.resize_uninitialized(rays.size());
+      closest_hit(*accel, rays.span(), hits.span());
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const double x = (-2.9 + 0.37 * static_cast<double>(i)) * stretch;
+        const SurfaceInteraction s = surface_interaction(*accel, rays[i], hits[i]);
+        const Vec3d wanted = normalize(Vec3d{-x / (4 * stretch * stretch), 1, 0});
+        EXPECT_LT(length(Vec3d(s.shading_normal) - wanted), 1e-6) << i;
+        EXPECT_GT(length(s.shading_normal - s.geometric_normal), 1e-4f) << i;
+      }
+    }
+}
+
 TEST(HeightFields, StepsHaveWalls) {
   const auto steps = height_field(4, 2, {0, 0, 8, 8, 0, 0, 8, 8}, Interpolation::nearest);
   // Levels 0, 4 and 8.

@@ -614,6 +614,8 @@ TEST(PovScene, HeightsOfPalettesAreNumbers) {
   // With sides and a bottom only where it is cut.
   const std::string base = ", base: -0.0001}";
   EXPECT_EQ(files.object("#version 3.7;\nheight_field { png \"a.png\" }").find(base), std::string::npos);
+  EXPECT_NE(files.object("#version 3.7;\nheight_field { png \"a.png\" smooth }").find("smooth: true"),
+            std::string::npos);
   EXPECT_NE(files.object("#version 3.7;\nintersection { height_field { png \"a.png\" } sphere { 0, 1 } }")
                 .find(base),
             std::string::npos);

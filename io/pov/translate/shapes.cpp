@@ -436,13 +436,12 @@ class ShapeMaker {
     if (gif)
       context_.tell("GIF heights", at,
                     "the heights of a GIF image are its grey values, not the numbers of its colours");
-    if (smooth)
-      context_.tell("smooth height field", where_, "height fields are triangles without smooth normals");
     const Node keys = map();
     tree_.put(keys, "file", tree_.text(at, path));
     if (palette) tree_.put(keys, "palette", tree_.word(where_, "true"));
     tree_.put(keys, "size", vector({1, 1, 1}));
     tree_.put(keys, "interpolation", tree_.word(where_, "triangles"));
+    if (smooth) tree_.put(keys, "smooth", tree_.flag(where_, true));
     // Only what is cut or combined needs sides and a bottom, which POV-Ray does not show.
     const bool solid = operand_ || water > 0;
     if (solid) tree_.put(keys, "base", number(-1e-4));
