@@ -68,7 +68,7 @@ struct Geometry {
   /// kNoId, replaces those of everything inside it; of nested instances the outermost counts.
   std::uint32_t user = kNoId;
   /// What rays it is for: it is in a structure if it has one of the bits of BuildOptions::mask. Solids of
-  /// combinations are there in any case.
+  /// combinations are there in any case; those of mask 0 cut others, but have no surface that rays hit.
   std::uint32_t mask = ~0u;
 };
 

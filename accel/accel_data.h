@@ -63,6 +63,7 @@ struct CsgItem {
   std::vector<std::uint32_t>
       unbounded;                     ///< geometries of `solids` that a ray may be inside without a crossing
   std::vector<std::uint8_t> needed;  ///< per geometry: 1 if no point outside of it is in the combination
+  std::vector<std::uint8_t> unseen;  ///< per geometry: 1 if it only cuts; empty if none does
   /// The crossings of all solids can be listed for several rays at once (accel/traverse/csg_lanes.h).
   bool in_lanes = false;
   /// All solids are shapes: crossings with several rays at once can be listed, but are swept one by one.

@@ -41,6 +41,9 @@ class HitList {
   Crossing& operator[](std::size_t i);
   void shrink(std::size_t size);
   std::vector<Crossing>& crossings() { return hits_; }
+  /// Whether crossings with what only cuts a combination are listed, as is needed to tell where a ray is
+  /// inside of it.
+  bool keeps_unseen = false;
 
  private:
   std::vector<Crossing>& hits_;

@@ -533,6 +533,7 @@ class WorldBuilder {
       Geometry solid;
       if (make_geometry(object, solid)) {
         world_.objects.back().name = own_name;
+        if (only_cuts(object)) solid.mask = 0;
         child.solids.push_back(std::move(solid));
       } else {
         // Operands have consecutive numbers, see StructureObjects.
@@ -540,6 +541,16 @@ class WorldBuilder {
       }
     }
     return expression;
+  }
+
+  /// Whether an operand has no surface and nothing inside: its material is a hole.
+  bool only_cuts(const Object& object) const {
+    if (object.material >= scene_.materials.size() || std::holds_alternative<MeshShape>(object.shape) ||
+        std::holds_alternative<InstanceShape>(object.shape))
+      return false;
+    const Material& m = scene_.materials[object.material];
+    return m.opacity == 0 && m.surface && m.interior == kNoId && m.priority == kNoPriority && !glows(m) &&
+           m.transparency == 0;
   }
 
   static void move(CsgExpression& expression, const Affine& transform) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "accel/accel_data.h"
 #include "accel/geometry_bounds.h"
@@ -175,6 +176,8 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
     for (const CsgExpression& child : e.children) self(self, child, node, &child == &e.children.front());
   };
   add(add, expression, kNoId, true);
+  if (std::ranges::any_of(solids, [](const Geometry& g) { return g.mask == 0; }))
+    for (Geometry& g : solids) csg.unseen.push_back(std::exchange(g.mask, ~0u) == 0);
   csg.solids = build_accel(std::move(solids), options);
   csg.has_meshes = prepare_senses(*csg.solids, seen);
   number_solids(csg);

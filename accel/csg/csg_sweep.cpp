@@ -140,9 +140,30 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   }
 }
 
+/// Which of the events from `first` to `end` is the hit where the ray enters (-1) or leaves (1) the
+/// combination: one with a solid that is entered or left likewise, if there is one, as its normal is right;
+/// `end` if only what has no surface is.
+std::size_t seen_event(const CsgItem& csg, const std::vector<Event>& events, std::size_t first,
+                       std::size_t end, float turn, bool with_unseen) {
+  const auto is_seen = [&](const Event& e) {
+    return with_unseen || csg.unseen.empty() || csg.unseen[e.geometry] == 0;
+  };
+  bool likewise = false;
+  for (std::size_t k = first; k < end; ++k) {
+    if (events[k].turn != turn) continue;
+    likewise = true;
+    if (is_seen(events[k])) return k;
+  }
+  if (likewise) return end;
+  for (std::size_t k = first; k < end && events[k].t == events[first].t; ++k)
+    if (is_seen(events[k])) return k;
+  return end;
+}
+
 /// Calls f(crossing) for each crossing of the combination until it returns false.
 template <class Function>
-void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, Function&& f) {
+void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, bool with_unseen,
+           Function&& f) {
   static thread_local Scratch scratch;
   Scratch& s = scratch;
   s.events.clear();
@@ -177,12 +198,9 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
     const bool now = s.states.whole();
     if (now == inside) continue;
     inside = now;
-    // The hit is with a solid that is entered or left as the combination is, if there is one: its normal is
-    // right.
     const float turn = now ? -1.0f : 1.0f;
-    std::size_t seen = first;
-    for (std::size_t k = i; k-- > first;)
-      if (s.events[k].turn == turn) seen = k;
+    const std::size_t seen = seen_event(csg, s.events, first, end, turn, with_unseen);
+    if (seen == end) continue;
     // found.turn follows the winding, as the normal does, also for meshes wound inside out.
     Crossing found = crossings[s.events[seen].crossing];
     found.hit.instance = csg_path(csg, found.hit.instance, found.turn != turn);
@@ -209,12 +227,12 @@ std::vector<Crossing>& borrow_list() {
 
 }  // namespace
 
-CsgSweep::CsgSweep() : list_(borrow_list()) {}
+CsgSweep::CsgSweep() : list_(borrow_list()) { list_.keeps_unseen = true; }
 CsgSweep::~CsgSweep() { --free_lists.used; }
 
 bool CsgSweep::first(const CsgItem& csg, const Ray& ray, Crossing& found) {
   bool any = false;
-  sweep(csg, ray, list_.crossings(), [&](const Crossing& c) {
+  sweep(csg, ray, list_.crossings(), false, [&](const Crossing& c) {
     found = c, any = true;
     return false;
   });
@@ -222,7 +240,7 @@ bool CsgSweep::first(const CsgItem& csg, const Ray& ray, Crossing& found) {
 }
 
 void CsgSweep::all(const CsgItem& csg, const Ray& ray, HitList& out) {
-  sweep(csg, ray, list_.crossings(), [&](const Crossing& c) {
+  sweep(csg, ray, list_.crossings(), out.keeps_unseen, [&](const Crossing& c) {
     if (c.hit.t <= ray.tmax) out.push(c.hit, c.turn);
     return c.hit.t <= ray.tmax;
   });

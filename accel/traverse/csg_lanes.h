@@ -105,10 +105,7 @@ class CsgLanes {
       const F after = advance(limit, end);
       const unsigned now = evaluate(steps);
       const unsigned turned = (now ^ inside) & active;
-      if (turned != 0) {
-        resolve(limit, end, next, turned, now, found);
-        active &= ~turned;
-      }
+      if (turned != 0) active &= ~resolve(limit, end, next, turned, now, found);
       inside = now, limit = end, next = after;
     }
   }
@@ -278,34 +275,43 @@ class CsgLanes {
   }
 
   /// Chooses the hits of the rays in `turned` among the crossings in (limit, end], the first of which is at
-  /// `next`; see CsgSweep. `now`: the rays that enter the combination.
-  OKTETT_NOINLINE void resolve(const F& limit, const F& end, const F& next, unsigned turned, unsigned now,
-                               Found& found) const {
+  /// `next`; see CsgSweep. `now`: the rays that enter the combination. Returns those that have a hit: others
+  /// pass what has no surface.
+  OKTETT_NOINLINE unsigned resolve(const F& limit, const F& end, const F& next, unsigned turned, unsigned now,
+                                   Found& found) const {
     const F inf(std::numeric_limits<float>::infinity());
     const F want = select(F::M::from_bits(now), F(-1.0f), F(1.0f));
     const auto meant = [&](int row, const F& t) {
       return (t > limit) & (t <= end) & (F::load(rows_.turn[row]) == want);
     };
+    const auto is_seen = [&](int row) {
+      return csg_.unseen.empty() || csg_.unseen[csg_.solids->geometry_of(rows_.item[row])] == 0;
+    };
     F same = inf;
+    auto matched = inf < inf;
     for (int row = 0; row < rows_.rows; ++row) {
       const F t = F::load(rows_.t[row]);
-      same = select(meant(row, t), min(t, same), same);
+      const auto likewise = meant(row, t);
+      matched = matched | likewise;
+      if (is_seen(row)) same = select(likewise, min(t, same), same);
     }
-    const auto matched = same < inf;
     const F chosen = select(matched, same, next);
     I least(0x7fffffff), at(0);
     for (int row = 0; row < rows_.rows; ++row) {
+      if (!is_seen(row)) continue;
       const F t = F::load(rows_.t[row]);
       const auto candidate = (t == chosen) & (t > limit) & (meant(row, t) | ~matched);
       const I item(static_cast<std::int32_t>(rows_.item[row]));
       const auto before = mask_cast<std::int32_t>(candidate) & (item < least);
       least = select(before, item, least), at = select(before, I(row), at);
     }
+    turned &= bits(least < I(0x7fffffff));
     const auto here = F::M::from_bits(turned);
     select(here, chosen, F::load(found.t)).store(found.t);
     select(mask_cast<std::int32_t>(here), at, I::load(found.row)).store(found.row);
     found.lanes |= turned;
     found.flipped |= turned & ~bits(matched);
+    return turned;
   }
 
   /// Greatest number of steps of an expression.

@@ -59,6 +59,14 @@ std::vector<float> crossings(const Accel& accel, const Ray& ray) {
     if (!list.empty()) {
       EXPECT_TRUE(hits[0] == list[0]);
     }
+    // Many at once go other ways.
+    RayBatch many;
+    for (int i = 0; i < 20; ++i) many.push_back(ray);
+    hits.resize_uninitialized(many.size());
+    closest_hit(accel, many.span(), hits.span(), isa);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      EXPECT_TRUE(list.empty() ? !hits[i].valid() : hits[i] == list[0]) << to_string(isa) << " " << i;
+    }
   }
   return t;
 }
@@ -374,6 +382,36 @@ TEST(Csg, RaysAlongEndlessOperandsAreInside) {
   const auto bored = built(whole(combine(CsgOp::subtract, {blob, pipe})));
   near(crossings(*bored, ray_along_x()), {});
   near(crossings(*bored, {{0, -4, 0}, 0, {0, 1, 0}, kInfinity}), {4 - r, 3.5f, 4.5f, 4 + r});
+}
+
+/// A ball that a box without a surface cuts is open there: rays go in, and meet the ball from inside. The
+/// same of primitives, of shapes and of meshes; where a face of the box lies on that of another box, that is
+/// seen.
+TEST(Csg, WhatOnlyCutsHasNoSurface) {
+  const auto r = static_cast<float>(std::sqrt(1 - std::sqrt(0.5)));
+  Geometry cut = cube({-4, -4, -4}, {0, 4, 4}, 9);
+  cut.mask = 0;
+  const struct {
+    Geometry solid;
+    float radius;
+  } kCases[] = {{ball({0, 0, 0}, 1, 1), 1},
+                {solid(ExactShape{MetaballsShape{0.5, {{{0, 0, 0}, 1, 1}}}}, 1), r}};
+  for (const auto& [whole_ball, radius] : kCases) {
+    const auto half = built(whole(combine(CsgOp::intersect, {whole_ball, cut})));
+    const auto rest = built(whole(combine(CsgOp::subtract, {whole_ball, cut})));
+    const auto places = [](const Accel& accel, const Ray& ray) {
+      Distances rounded;
+      for (const float t : crossings(accel, ray)) rounded.push_back(std::round(t * 4096) / 4096);
+      return rounded;
+    };
+    const float from = std::round((8 - radius) * 4096) / 4096, to = std::round((8 + radius) * 4096) / 4096;
+    EXPECT_EQ(places(*half, ray_along_x()), Distances{from});
+    EXPECT_EQ(places(*half, {{8, 0, 0}, 0, {-1, 0, 0}, kInfinity}), Distances{to});
+    EXPECT_EQ(places(*rest, ray_along_x()), Distances{to});
+    EXPECT_EQ(places(*rest, {{-1, 0.1f, 0}, 0, {0, 1, 0}, kInfinity}), Distances{});
+  }
+  const auto walls = built(whole(combine(CsgOp::intersect, {cube({-1, -1, -1}, {0, 1, 1}, 1), cut})));
+  EXPECT_EQ(crossings(*walls, ray_along_x()), (Distances{7, 8}));
 }
 
 /// Rays that begin inside of an operand whose surface lies beyond their ends, many at once: of its inside
