@@ -13,9 +13,10 @@ namespace {
 
 /// The gradient of f by central differences, of length 1; zero near edges, where two steps do not agree.
 Vec3d gradient(const SurfaceFunction& f, const Vec3l& p, long double size) {
-  Vec3l found[2];
-  for (int wide = 0; wide < 2; ++wide) {
-    const long double h = size * (wide == 0 ? 1e-6L : 1e-5L);
+  constexpr long double kSteps[3] = {1e-6L, 1e-8L, 1e-5L};
+  Vec3l found[3];
+  for (int wide = 0; wide < 3; ++wide) {
+    const long double h = size * kSteps[wide];
     for (int k = 0; k < 3; ++k) {
       Vec3l a = p, b = p;
       a[k] -= h, b[k] += h;
@@ -25,8 +26,9 @@ Vec3d gradient(const SurfaceFunction& f, const Vec3l& p, long double size) {
     if (!(l > 0) || !std::isfinite(l)) return {0, 0, 0};
     found[wide] = found[wide] / l;
   }
-  const Vec3l off = found[0] - found[1];
-  return dot(off, off) < 1e-12L ? Vec3d(found[0]) : Vec3d{0, 0, 0};
+  for (const Vec3l& other : {found[1], found[2]})
+    if (const Vec3l off = found[0] - other; !(dot(off, off) < 1e-12L)) return {0, 0, 0};
+  return Vec3d(found[0]);
 }
 
 }  // namespace
