@@ -58,15 +58,19 @@ std::optional<Shapes> make_patch(Context& context, Arguments& a) {
   Tree& tree = context.tree;
   const Place where = a.block().where;
   std::vector<double> uv;
-  // Settings of how fine POV-Ray divides it stand before the points.
-  for (;;) {
+  // Settings of how fine POV-Ray divides it stand before the points; in old scenes they are mere numbers.
+  for (bool has_words = false;;) {
     if (a.at_end()) context.fail(a.where(), "expected 16 points");
     if (a.take_word("uv_vectors")) {
       for (int k = 0; k < 4; ++k) {
         const auto pair = a.pair("a texture coordinate");
         uv.insert(uv.end(), pair.begin(), pair.end());
       }
-    } else if (a.is_vector()) {
+    } else if (!a.peek_word().empty()) {
+      has_words = true;
+      a.take();
+      if (a.is_numbers() && !a.is_vector()) a.take();
+    } else if (a.is_vector() || has_words) {
       break;
     } else {
       a.take();
