@@ -141,21 +141,29 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
   list.shrink(kept);
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
-    return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
+    if (a.hit.t != b.hit.t) return a.hit.t < b.hit.t;
+    return a.turn != b.turn ? a.turn < b.turn : a.hit.u < b.hit.u;
   });
   for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
     end = begin + 1;
     while (end < crossings.size() && crossings[end].hit.item == crossings[begin].hit.item) ++end;
     order_equal_crossings({&crossings[begin], end - begin});
   }
-  // Of several crossings inwards in a row the first counts, of several outwards the last.
+  const auto is_of_sheet = [&](const Crossing& c) {
+    return exact_ops(static_cast<Kind>(accel.kinds[accel.geometry_of(c.hit.item)])).sheets;
+  };
+  // Of several crossings inwards in a row the first counts, of several outwards the last. Those of sheets are
+  // one only where they are in one place, as at a border of two cells; the first counts.
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const auto same = [&](std::size_t k) {
-      return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
-             crossings[k].turn == crossings[i].turn;
+      if (!(k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
+            crossings[k].turn == crossings[i].turn))
+        return false;
+      const float t = crossings[i].hit.t, apart = std::abs(t - crossings[k].hit.t);
+      return apart <= 0x1p-21f * t || !is_of_sheet(crossings[i]);
     };
-    if (crossings[i].turn < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1))
-      list.push(crossings[i].hit, crossings[i].turn);
+    const bool first_counts = crossings[i].turn < 0 || is_of_sheet(crossings[i]);
+    if (first_counts ? !(i > 0 && same(i - 1)) : !same(i + 1)) list.push(crossings[i].hit, crossings[i].turn);
   }
 }
 

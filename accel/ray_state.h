@@ -148,12 +148,18 @@ OKTETT_INLINE bool id_before(std::uint32_t path, std::uint32_t item, std::uint32
 }
 
 /// Keeps the hit of lane `i` with `item` at distance t if it is the nearest so far, or as near and first in
-/// order.
+/// order: that of items, or of the v and then the u of one item, several cells of which may meet there.
 template <int W, class A>
 OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float v, std::uint32_t item,
                               std::uint32_t path) {
   if (t > r.tmax[i]) return;
-  if (t == r.tmax[i] && r.item[i] != kNoId && !id_before(path, item, r.path[i], r.item[i])) return;
+  if (t == r.tmax[i] && r.item[i] != kNoId) {
+    if (path == r.path[i] && item == r.item[i]) {
+      if (v != r.v[i] ? v > r.v[i] : u >= r.u[i]) return;
+    } else if (!id_before(path, item, r.path[i], r.item[i])) {
+      return;
+    }
+  }
   r.tmax[i] = t, r.u[i] = u, r.v[i] = v, r.item[i] = item, r.path[i] = path;
 }
 

@@ -17,6 +17,7 @@ struct ExactOps {
   const char* name;    ///< as in surfaces.def
   int most_crossings;  ///< S::kMaxCrossings
   bool one_cell;       ///< S::kOneCell
+  bool sheets;         ///< S::kSheets
 
   std::unique_ptr<ExactPoolBase> (*make_pool)();
   /// Appends the element that `shape`, which must be of this surface, describes, and its cells; nothing if

@@ -170,6 +170,15 @@ bool read_item(SceneLoad& load, const YamlNode& node, SweptSphere& sphere) {
   return true;
 }
 
+bool read_item(SceneLoad& load, const YamlNode& node, BezierPatchPoints& patch) {
+  const auto items = list_items(node, "patches");
+  if (items.size() != std::size(patch.p))
+    throw Error(node.where(), fmt::format("expected 16 points, found {}", items.size()));
+  for (std::size_t k = 0; k < items.size(); ++k)
+    attempt(*items[k], [&] { patch.p[k] = load.values.vector(*items[k]); });
+  return true;
+}
+
 bool read_item(SceneLoad& load, const YamlNode& node, PlaneOutline& outline) {
   const auto items = list_items(node, "outlines");
   if (items.empty() || items.size() > kMaxOutlinePoints)
@@ -218,10 +227,11 @@ bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball) {
   return true;
 }
 
-FunctionTape read_function(SceneLoad& load, const YamlNode& node) {
+FunctionTape read_function(SceneLoad& load, const YamlNode& node,
+                           std::span<const std::string_view> variables) {
   const std::string text = load.values.text(node);
   try {
-    return compile_function(text);
+    return compile_function(text, variables);
   } catch (const Error& e) {
     fail_in_text("function", node, text, e);
   }

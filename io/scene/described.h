@@ -71,8 +71,9 @@ const char* map_name(const char* key) {
     return key;
 }
 
-/// A function of x, y and z.
-FunctionTape read_function(SceneLoad& load, const YamlNode& node);
+/// A function of x, y and z, or of other variables.
+FunctionTape read_function(SceneLoad& load, const YamlNode& node,
+                           std::span<const std::string_view> variables = kSpaceVariables);
 
 // Items of lists. Each returns whether the item is kept; it warns of those that are not.
 bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point);
@@ -82,6 +83,7 @@ bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane);
 bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
 bool read_item(SceneLoad& load, const YamlNode& node, PlaneOutline& outline);
 bool read_item(SceneLoad& load, const YamlNode& node, SweptSphere& sphere);
+bool read_item(SceneLoad& load, const YamlNode& node, BezierPatchPoints& patch);
 bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
 bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
 bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);
@@ -135,6 +137,9 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   void read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points);
   void read(const YamlNode& node, const Parameter& parameter, std::vector<Monomial>& terms);
   void read(const YamlNode& node, const Parameter&, FunctionTape& f) { f = read_function(load_, node); }
+  void read(const YamlNode& node, const Parameter&, UvFunction& f) {
+    f.tape = read_function(load_, node, kSurfaceVariables);
+  }
   void read(const YamlNode&, const Parameter&, const ByHand&) {}
   template <class T>
   void read(const YamlNode& node, const Parameter&, ChoiceOf<T>& choice) {

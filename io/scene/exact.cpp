@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/exact/bezier_patch.h"
 #include "kernels/exact/lathe.h"
+#include "kernels/exact/parametric.h"
 #include "kernels/exact/polyhedron.h"
 #include "kernels/exact/prism.h"
 #include "kernels/exact/revolution.h"
@@ -119,6 +121,20 @@ MaybeForm finish(const ShapeNode& at, SphereSweepShape& shape) {
   SphereSweep::Pool pool;
   SphereSweep::add(pool, shape, {});
   if (pool.elements.empty()) return at.skip("all radii are zero");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, BezierPatchShape& shape) {
+  BezierPatch::Pool pool;
+  BezierPatch::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("all control points are in one place");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, ParametricShape& shape) {
+  Parametric::Pool pool;
+  Parametric::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("the functions give no points that could be seen");
   return shape;
 }
 

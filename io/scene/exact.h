@@ -32,6 +32,8 @@ std::optional<ExactForm> finish(const ShapeNode& at, TurnedProfile& profile);
 std::optional<ExactForm> finish(const ShapeNode& at, PrismShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, TextKeys& keys);
 std::optional<ExactForm> finish(const ShapeNode& at, SphereSweepShape& shape);
+std::optional<ExactForm> finish(const ShapeNode& at, BezierPatchShape& shape);
+std::optional<ExactForm> finish(const ShapeNode& at, ParametricShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, MetaballsShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, BlobTreeShape& shape);
 std::optional<ExactForm> finish(const ShapeNode& at, JuliaShape& shape);

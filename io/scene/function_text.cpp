@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,9 @@ constexpr const char* kPatterns[] = {
 
 }  // namespace
 
-std::string function_text(const FunctionTape& tape) {
+std::string function_text(const FunctionTape& tape, std::span<const std::string_view> variables) {
   std::vector<std::string> r(static_cast<std::size_t>(tape.registers));
-  r[0] = "x", r[1] = "y", r[2] = "z";
+  std::ranges::copy(variables, r.begin());
   for (const TapeStep& s : tape.steps) {
     // Copies, since a result may overwrite what it is made of.
     const std::string a = r[s.a], b = r[s.b];

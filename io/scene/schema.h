@@ -119,6 +119,10 @@ inline std::string schema_of(Schema&, const Range& counts, std::span<const Vec3d
 }
 inline std::string schema_of(Schema&, const Range&, const std::vector<Monomial>&) { return Schema::text(); }
 inline std::string schema_of(Schema&, const Range&, const FunctionTape&) { return Schema::text(); }
+inline std::string schema_of(Schema&, const Range&, const UvFunction&) { return Schema::text(); }
+inline std::string schema_of(Schema&, const Range&, const BezierPatchPoints& patch) {
+  return Schema::list(Schema::vector(), whole(std::size(patch.p), std::size(patch.p)));
+}
 inline std::string schema_of(Schema&, const Range&, const PolygonHole&) {
   return Schema::list(Schema::vector(), whole(3, kMaxPolygonVertices));
 }

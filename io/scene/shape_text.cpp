@@ -46,6 +46,7 @@ bool is_given(const T&, std::string_view) {
 bool is_given(const PolygonShape& s, std::string_view key) { return key != "holes" || !s.holes.empty(); }
 bool is_given(const QuadricShape& s, std::string_view key) { return key != "clip" || s.clipped; }
 bool is_given(const BlobShape& s, std::string_view key) { return key != "bounds" || s.bounded; }
+bool is_given(const ParametricShape& s, std::string_view key) { return key != "clip" || s.cut; }
 bool is_given(const MeshShape& s, std::string_view key) {
   return key != "stroke_width" || s.stroke_width > 0;
 }
@@ -82,6 +83,10 @@ class ParameterWriter : public ParameterVisitor<ParameterWriter<Shape>> {
   static std::string text(const ClipBox& box) { return box_text(box.lo, box.hi); }
   static std::string text(const std::vector<Monomial>& terms) { return '"' + polynomial_text(terms) + '"'; }
   static std::string text(const FunctionTape& tape) { return '"' + function_text(tape) + '"'; }
+  static std::string text(const UvFunction& f) {
+    return '"' + function_text(f.tape, kSurfaceVariables) + '"';
+  }
+  static std::string text(const BezierPatchPoints& patch) { return text(patch.p); }
   static std::string text(const HalfSpace& h) {
     return text(std::array{h.normal.x, h.normal.y, h.normal.z, h.offset});
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -36,7 +37,8 @@ std::string vector_text(const Vec3d& v);
 /// {matrix: [...]}.
 std::string transform_text(const Affine& map);
 /// A function as compile_function reads it. Throws Error if it is too long for a scene file.
-std::string function_text(const FunctionTape& tape);
+std::string function_text(const FunctionTape& tape,
+                          std::span<const std::string_view> variables = kSpaceVariables);
 
 /// `key: value` of a shape, e.g. "torus: {major: 1, minor: 0.25, normals: gradient}". Not for combinations
 /// and instances.

@@ -34,6 +34,7 @@ std::string allowed(const Range&, const std::vector<Monomial>&) {
          "products of terms";
 }
 std::string allowed(const Range&, const FunctionTape&) { return "[expression](#values) in x, y and z"; }
+std::string allowed(const Range&, const UvFunction&) { return "[expression](#values) in u and v"; }
 std::string allowed(const Range&, const SolidBox&) { return "`{min, max}`, two points"; }
 std::string allowed(const Range&, const ClipBox& box) { return '`' + written(box) + '`'; }
 std::string allowed(const Range&, const TextureIndex&) { return "[texture](#textures)"; }
@@ -55,6 +56,7 @@ std::string items(const PolygonHole&) { return "lists of points"; }
 std::string items(const HalfSpace&) { return "`[nx, ny, nz, d]`"; }
 std::string items(const ProfilePoint&) { return "`[radius, height]`"; }
 std::string items(const SweptSphere&) { return "`[x, y, z, radius]`"; }
+std::string items(const BezierPatchPoints&) { return "lists of 16 points"; }
 std::string items(const PlaneOutline&) { return "lists of points, 2 numbers each"; }
 std::string items(const Affine&) { return "[transforms](#transforms)"; }
 std::string items(const BlobSource& source) {

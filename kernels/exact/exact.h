@@ -24,6 +24,8 @@
 /// - `S::kOneCell`: each element is one cell, and its crossings are listed as they are. Without it an
 ///   element may have several cells. Two cells that meet may both list the crossing there, so the lists are
 ///   merged;
+/// - `S::kSheets`: what goes in need not come out, as of surfaces that are not closed. Of the lists of cells
+///   only those crossings are merged that are the same one;
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only to
 ///   where the ray begins; `crossings` bears NaN and infinities;
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;

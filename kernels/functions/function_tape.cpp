@@ -152,7 +152,6 @@ TapeValues values_of(const FunctionTape& tape) {
 namespace {
 
 using Number = Simd<double, 1, ScalarIsa>;
-constexpr std::string_view kVariables[] = {"x", "y", "z"};
 
 [[noreturn]] void fail(std::size_t place, const std::string& what) {
   throw Error(Location{"", 0, static_cast<int>(place) + 1}, what);
@@ -298,8 +297,8 @@ class Values {
 
 }  // namespace
 
-FunctionTape compile_function(std::string_view text) {
-  const Expression parsed = parse_expression(text, kVariables);
+FunctionTape compile_function(std::string_view text, std::span<const std::string_view> variables) {
+  const Expression parsed = parse_expression(text, variables);
   Values values;
   std::vector<std::uint32_t> made;
   for (std::size_t i = 0; i < parsed.nodes.size(); ++i) {

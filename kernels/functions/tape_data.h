@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -79,7 +80,11 @@ struct FunctionTape {
   bool varies = false;      ///< whether the value depends on x, y or z
 };
 
-/// Compiles a text: numbers, + - * / ^, parentheses, the variables x, y and z, the constants pi and e, and
+/// The names of the variables of a function in space, and of one on a surface.
+inline constexpr std::string_view kSpaceVariables[] = {"x", "y", "z"};
+inline constexpr std::string_view kSurfaceVariables[] = {"u", "v"};
+
+/// Compiles a text: numbers, + - * / ^, parentheses, up to three variables, the constants pi and e, and
 /// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
 /// sign hypot (angles in radians) and noise(a, b, c), the gradient noise of patterns. Constants are rounded
 /// to double. a^b, where b is no constant, is exp(b log a); it and powers with an exponent that is not whole,
@@ -87,10 +92,11 @@ struct FunctionTape {
 ///
 /// Throws Error if the text cannot be read, holds a constant without a finite value, such as 1/0, or is too
 /// long. Error::where().column counts bytes in `text` from 1.
-FunctionTape compile_function(std::string_view text);
+FunctionTape compile_function(std::string_view text,
+                              std::span<const std::string_view> variables = kSpaceVariables);
 
-/// The function at one point; NaN where it is not defined. Code for many points runs the tape in lanes
-/// instead.
+/// The function at one point (of u, v and 0 for one on a surface); NaN where it is not defined. Code for many
+/// points runs the tape in lanes instead.
 double value_at(const FunctionTape& tape, double x, double y, double z);
 
 }  // namespace oktett

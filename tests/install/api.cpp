@@ -95,6 +95,7 @@ static_assert(IsExact<SuperquadricShape> && IsExact<MetaballsShape> && IsExact<B
 static_assert(IsExact<ImplicitShape> && IsExact<SphereflakeShape> && IsExact<MengerShape>);
 static_assert(IsExact<IfsShape> && IsExact<JuliaShape> && IsExact<TerrainShape>);
 static_assert(IsExact<HeightFieldShape> && IsExact<PrismShape> && IsExact<SphereSweepShape>);
+static_assert(IsExact<BezierPatchShape> && IsExact<ParametricShape>);
 static_assert(std::same_as<decltype(Ray::origin), Vec3f> && std::same_as<decltype(Ray::tmax), float>);
 static_assert(std::same_as<decltype(Hit::item), std::uint32_t> && sizeof(Hit) == 20 && sizeof(Ray) == 32);
 static_assert(std::same_as<decltype(SurfaceInteraction::user), std::uint32_t>);

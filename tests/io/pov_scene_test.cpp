@@ -118,6 +118,18 @@ TEST(PovScene, ShapesHaveTheirKeys) {
       {"quadric { <1,2,3>, <4,5,6>, <7,8,9>, -1 }",
        "{quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, -1]}}"},
       {"superellipsoid { <0.5, 0.5> }", "{superellipsoid: {p: 4, q: 4, r: 4}}"},
+      {"superellipsoid { <0.5, 0.25> }", "{supertoroid: {m: 4, n: 4, q: 2, r: 1, p: 8, d: 0, e: 1}}"},
+      {"bicubic_patch { type 1 flatness 0.01 u_steps 3 v_steps 3 uv_vectors <0,0>, <0.5,0>, <0.5,1>, <0,1> "
+       "0, x, 2*x, 3*x, y, x+y, <2,1,1>, <3,1,0>, 2*y, <1,2,0>, <2,2,0>, <3,2,0>, 3*y, <1,3,0>, <2,3,0>, "
+       "<3,3,0> }",
+       "{bezier_patch: {patches: [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, "
+       "1], [3, 1, 0], [0, 2, 0], [1, 2, 0], [2, 2, 0], [3, 2, 0], [0, 3, 0], [1, 3, 0], [2, 3, 0], [3, 3, "
+       "0]]], uv: [0, 0, 0.5, 0, 0.5, 1, 0, 1]}}"},
+      {"parametric { function { u*cos(v) } function { u*sin(v) } function { v } <0,-1>, <1,2> contained_by { "
+       "sphere { 0, 3 } } max_gradient 2 accuracy 0.001 precompute 10 x,y,z }",
+       "{parametric: {x: \"(u * cos(v))\", y: \"(u * sin(v))\", z: \"v\", from: [0, -1], to: [1, 2], clip: "
+       "{min: [-3, "
+       "-3, -3], max: [3, 3, 3]}}}"},
       {"triangle { 0, x, y }", "{mesh: {file: triangle.ply}}"},
       {"sor { 4, <0.5,0>, <1,1>, <0.5,2>, <0.5,3> }",
        "{revolution: {profile: sor, points: [[0.5, 0], [1, 1], [0.5, 2], [0.5, 3]]}}"},

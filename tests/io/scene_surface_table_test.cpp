@@ -43,6 +43,12 @@ std::string sample(const std::string& surface, const DescribedParameter& p) {
       {"blob.sources", "[{point: [0, 0, 0]}]"},
       {"revolution.points", "[[1, -1], [1, 0], [1, 1], [1, 2]]"},
       {"sphere_sweep.spheres", "[[0, 0, 0, 1], [1, 0, 0, 1], [2, 0, 0, 1], [3, 0, 0, 1]]"},
+      {"bezier_patch.patches",
+       "[[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [1, 1, 1], [2, 1, 1], [3, 1, 0], "
+       "[0, 2, 0], [1, 2, 1], [2, 2, 1], [3, 2, 0], [0, 3, 0], [1, 3, 0], [2, 3, 0], [3, 3, 0]]]"},
+      {"parametric.x", "u"},
+      {"parametric.y", "v"},
+      {"parametric.z", "u * v"},
       {"text.font", "font.ttf"},
       {"text.text", "a"},
       {"prism.outlines", "[[[0, 0], [1, 0], [0, 1], [0, 0]]]"},

@@ -72,9 +72,9 @@ std::vector<ExactCase> make_cases() {
   std::vector<ExactCase> all{
       {"torus", [](CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }},
       {"cyclide", cyclide}};
-  for (const auto& family :
-       {quadric_cases(), polynomial_cases(), prism_cases(), sweep_cases(), superquadric_cases(),
-        metaball_cases(), blobtree_cases(), function_cases(), fractal_cases(), height_cases()})
+  for (const auto& family : {quadric_cases(), polynomial_cases(), prism_cases(), sweep_cases(), patch_cases(),
+                             parametric_cases(), superquadric_cases(), metaball_cases(), blobtree_cases(),
+                             function_cases(), fractal_cases(), height_cases()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

@@ -31,6 +31,9 @@ std::vector<ExactCase> polynomial_cases();
 std::vector<ExactCase> prism_cases();
 /// Sweeps of spheres.
 std::vector<ExactCase> sweep_cases();
+/// Bezier patches, and surfaces given by functions of two parameters.
+std::vector<ExactCase> patch_cases();
+std::vector<ExactCase> parametric_cases();
 /// Superquadrics and ratioquadrics.
 std::vector<ExactCase> superquadric_cases();
 /// Metaballs and blob trees.

@@ -273,11 +273,11 @@ class Writer {
 }  // namespace
 
 std::optional<std::string> function_text(Context& context, const Function& function, const Place& where,
-                                         double threshold) {
+                                         double threshold, std::span<const std::string_view> variables) {
   try {
-    std::string text = Writer(function, {"x", "y", "z"}, context, 0).text();
+    std::string text = Writer(function, {variables.begin(), variables.end()}, context, 0).text();
     if (threshold != 0) text += fmt::format(" - {}", number_of(threshold));
-    parse_expression(text, std::array<std::string_view, 3>{"x", "y", "z"});
+    parse_expression(text, variables);
     return text;
   } catch (const Unwritable& reason) {
     context.tell(

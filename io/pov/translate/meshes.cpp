@@ -299,55 +299,6 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
   return MadeMesh{{{mesh, nullptr}}, false};
 }
 
-// ---- Patches.
-
-MadeMesh make_patch(Context& context, Arguments& a) {
-  const Place where = a.where();
-  int steps[2] = {8, 8};
-  while (!a.is_vector()) {
-    const std::string_view word = a.peek_word();
-    if (a.at_end()) context.fail(a.where(), "expected 16 points");
-    a.take();
-    if (word == "u_steps" || word == "v_steps")
-      steps[word == "v_steps"] = 1 << std::clamp(static_cast<int>(a.number("a number")), 0, 6);
-    else if (!word.empty() && a.is_numbers() && !a.is_vector())
-      a.take();
-  }
-  context.tell("bicubic_patch", where, "Bezier patches are meshes, at least 16 by 16 smooth quadrilaterals");
-  for (int& s : steps) s = std::max(s, 16);
-  Vec3d p[4][4];
-  for (auto& row : p)
-    for (Vec3d& each : row) each = a.vector("a point");
-  const auto weights = [](double t, double(&w)[4], double(&d)[4]) {
-    const double s = 1 - t;
-    w[0] = s * s * s, w[1] = 3 * s * s * t, w[2] = 3 * s * t * t, w[3] = t * t * t;
-    d[0] = -3 * s * s, d[1] = 3 * s * s - 6 * s * t, d[2] = 6 * s * t - 3 * t * t, d[3] = 3 * t * t;
-  };
-  const auto corner = [&](int i, int j) {
-    double wu[4], du[4], wv[4], dv[4];
-    const double u = static_cast<double>(i) / steps[0], v = static_cast<double>(j) / steps[1];
-    weights(u, wu, du), weights(v, wv, dv);
-    Vec3d at{0, 0, 0}, along_u{0, 0, 0}, along_v{0, 0, 0};
-    for (int m = 0; m < 4; ++m)
-      for (int n = 0; n < 4; ++n) {
-        at = at + p[m][n] * (wv[m] * wu[n]);
-        along_u = along_u + p[m][n] * (wv[m] * du[n]), along_v = along_v + p[m][n] * (dv[m] * wu[n]);
-      }
-    MeshCorner c{at};
-    const Vec3d normal = cross(along_v, along_u);
-    if (length(normal) > 1e-12) c.normal = normal / length(normal);
-    c.uv = {u, v};
-    return c;
-  };
-  MeshMaker mesh;
-  for (int i = 0; i < steps[0]; ++i)
-    for (int j = 0; j < steps[1]; ++j) {
-      const MeshCorner c[4] = {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
-      mesh.add({c[0], c[1], c[2]}), mesh.add({c[0], c[2], c[3]});
-    }
-  return {{{mesh, nullptr}}, false};
-}
-
 }  // namespace
 
 std::optional<MadeMesh> make_mesh(Context& context, Arguments& a) {
@@ -357,7 +308,6 @@ std::optional<MadeMesh> make_mesh(Context& context, Arguments& a) {
   if (kind == "triangle" || kind == "smooth_triangle")
     return make_triangles(context, a.block(), kind == "smooth_triangle", a);
   if (kind == "polygon") return make_polygon(context, a);
-  if (kind == "bicubic_patch") return make_patch(context, a);
   return std::nullopt;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Objects that are meshes here: mesh, mesh2, smooth_triangle, polygon and bicubic_patch. Within io/
-/// only.
+/// \file Objects that are meshes here: mesh, mesh2, smooth_triangle and polygon. Within io/ only.
 
 #include <array>
 #include <memory>

@@ -49,9 +49,9 @@ void ObjectWriter::count_uses(const std::shared_ptr<const Block>& block) {
 int ObjectWriter::weight(const Block& block) {
   const auto [entry, is_new] = weights_.try_emplace(&block, 0);
   if (!is_new) return entry->second;
-  constexpr std::array<std::string_view, 13> kHeavy{
-      "mesh",  "mesh2", "height_field", "isosurface", "blob",          "poly",         "quartic",
-      "cubic", "lathe", "sor",          "prism",      "bicubic_patch", "julia_fractal"};
+  constexpr std::array<std::string_view, 14> kHeavy{
+      "mesh",  "mesh2", "height_field", "isosurface", "blob",          "poly",          "quartic",
+      "cubic", "lathe", "sor",          "prism",      "bicubic_patch", "julia_fractal", "parametric"};
   int sum = std::ranges::find(kHeavy, block.keyword) != kHeavy.end() ? kOperandWeight : 0;
   bool has_children = false;
   for (const Element& e : block.elements)

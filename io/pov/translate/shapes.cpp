@@ -11,6 +11,7 @@
 #include "io/pov/translate/blobs.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/meshes.h"
+#include "io/pov/translate/patches.h"
 #include "io/pov/translate/polynomials.h"
 #include "io/pov/translate/sweeps.h"
 #include "kernels/exact/lathe.h"
@@ -51,9 +52,10 @@ class ShapeMaker {
     if (k == "julia_fractal") return julia();
     if (k == "height_field") return height_field();
     if (k == "prism" || k == "text" || k == "sphere_sweep") return make_sweep(context_, a_);
+    if (k == "bicubic_patch") return make_patch(context_, a_);
+    if (k == "parametric") return make_parametric(context_, a_);
     if (std::optional<MadeMesh> made = make_mesh(context_, a_)) return mesh(std::move(*made));
-    constexpr std::array<std::string_view, 5> kMeshes{"mesh", "mesh2", "triangle", "polygon",
-                                                      "bicubic_patch"};
+    constexpr std::array<std::string_view, 4> kMeshes{"mesh", "mesh2", "triangle", "polygon"};
     if (std::ranges::find(kMeshes, k) == kMeshes.end())
       context_.tell(std::string(k), where_,
                     fmt::format("'{}' is not read here; such objects are left out", k));
@@ -175,14 +177,13 @@ class ShapeMaker {
       for (const char* key : {"p", "q", "r"}) tree_.put(keys, key, number(std::min(2 / e[0], 1024.0)));
       return one("superellipsoid", keys);
     }
+    // A toroid whose ring has shrunk to the axis: (|x|^m + |y|^m)^q + |z|^p = 1.
     const Node keys = map();
-    const double p = std::min(2 / e[0], 1024.0), q = e[0] / e[1], r = std::min(2 / e[1], 1024.0);
-    tree_.put(
-        keys, "function",
-        tree_.text(where_, fmt::format("pow(pow(abs(x), {}) + pow(abs(y), {}), {}) + pow(abs(z), {}) - 1", p,
-                                       p, q, r)));
-    put_bounds(keys, {-1.01, -1.01, -1.01}, {1.01, 1.01, 1.01});
-    return one("implicit", keys);
+    for (const char* key : {"m", "n"}) tree_.put(keys, key, number(std::min(2 / e[0], 1024.0)));
+    tree_.put(keys, "q", number(std::min(e[0] / e[1], 1024.0))), tree_.put(keys, "r", number(1));
+    tree_.put(keys, "p", number(std::min(2 / e[1], 1024.0)));
+    tree_.put(keys, "d", number(0)), tree_.put(keys, "e", number(1));
+    return one("supertoroid", keys);
   }
 
   // ---- Surfaces of revolution.
