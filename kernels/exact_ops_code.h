@@ -47,14 +47,24 @@ template <class S>
 constexpr ExactOps make_exact_ops(const char* name) {
   using Code = ExactOpsCode<S>;
   constexpr bool one_cell = requires { S::kOneCell; };
-  ExactOps ops{name, S::kMaxCrossings, one_cell, requires {S::kSheets;
-}
-, Code::make_pool, Code::add, Code::bounds, Code::inside, Code::template interaction<true>,
-    Code::template interaction<false>, nullptr, Code::bytes, nullptr, nullptr
-};  // namespace oktett
-if constexpr (requires(const typename Code::Pool& pool) { S::uv(pool, 0, 0, Vec3d{}); }) ops.uv = Code::uv;
-if constexpr (requires { &S::closest; }) ops.closest = Code::closest, ops.is_kept_by = S::is_kept_by;
-return ops;
+  constexpr bool sheets = requires { S::kSheets; };
+  ExactOps ops{name,
+               S::kMaxCrossings,
+               one_cell,
+               sheets,
+               Code::make_pool,
+               Code::add,
+               Code::bounds,
+               Code::inside,
+               Code::template interaction<true>,
+               Code::template interaction<false>,
+               nullptr,
+               Code::bytes,
+               nullptr,
+               nullptr};
+  if constexpr (requires(const typename Code::Pool& pool) { S::uv(pool, 0, 0, Vec3d{}); }) ops.uv = Code::uv;
+  if constexpr (requires { &S::closest; }) ops.closest = Code::closest, ops.is_kept_by = S::is_kept_by;
+  return ops;
 }
 
 }  // namespace oktett

@@ -31,9 +31,9 @@
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;
 /// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
 ///   the ray does;
-/// - `S::is_smooth(pool, i)` and `S::smooth_gradient(pool, i, part, p)`: whether shading has normals of its
-/// own,
-///   and their gradient;
+/// - `S::is_smooth(pool, i)`, `S::smooth_gradient(pool, i, part, p)`: whether light falls by another
+/// gradient,
+///   and that gradient;
 /// - `S::interaction(pool, i, ray, hit)` in place of slope and uv: a fractal (fractal.h);
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
 ///   than the image of the cell;
