@@ -20,7 +20,8 @@ double fog_below(double h) { return h > 0 ? portable::atan(h) : h; }
 double fog_depth(const Fog& fog, const Vec3d& origin, const Vec3d& direction, double distance) {
   if (fog.altitude == 0) return distance;
   const Vec3d up = normalize(fog.up);
-  const double start = (dot(origin, up) - fog.offset) / fog.altitude, slope = dot(direction, up) / fog.altitude;
+  const double start = (dot(origin, up) - fog.offset) / fog.altitude,
+               slope = dot(direction, up) / fog.altitude;
   // Nearly level ways have the density in their middle.
   constexpr double kLevel = 1e-5;
   const double rise = slope * distance;
@@ -32,8 +33,7 @@ double fog_depth(const Fog& fog, const Vec3d& origin, const Vec3d& direction, do
 
 }  // namespace
 
-Veil pass_fogs(std::span<const Fog> fogs, const Vec3d& origin, const Vec3d& direction,
-                     double distance) {
+Veil pass_fogs(std::span<const Fog> fogs, const Vec3d& origin, const Vec3d& direction, double distance) {
   Veil all;
   for (const Fog& fog : fogs) {
     const double depth = fog_depth(fog, origin, direction, distance) / fog.distance;

@@ -126,7 +126,8 @@ Veil march(const MarchedMedium& medium, const MediumWay& given, std::uint32_t st
     const Vec3d passed = exponentials(at.extinction * step);
     const Vec3d seen = left * seen_length(at.extinction, step, passed);
     light = light + at.emission * seen;
-    if (scatter != nullptr && max_component(at.scattering) > 0) (*scatter)(place, Color(at.scattering * seen));
+    if (scatter != nullptr && max_component(at.scattering) > 0)
+      (*scatter)(place, Color(at.scattering * seen));
     left = left * passed;
   }
   return {Color(left), Color(light)};
@@ -178,9 +179,9 @@ Color passing_interior(const RenderContext& context, std::uint32_t material, con
   if (number >= context.marched.size()) return {1, 1, 1};
   const Medium& medium = context.marched[number];
   const MarchedMedium marched(context, medium);
-  const Color left =
-      medium.varies() ? march(marched, way, std::max(4u, medium.steps / 4), nullptr).left
-                      : Color(exponentials(depth_of(marched.at(way.origin).extinction, way.length)));
+  const Color left = medium.varies()
+                         ? march(marched, way, std::max(4u, medium.steps / 4), nullptr).left
+                         : Color(exponentials(depth_of(marched.at(way.origin).extinction, way.length)));
   return left * marched.faded(way.length);
 }
 

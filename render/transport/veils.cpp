@@ -54,10 +54,9 @@ class FilledWay {
       if (number >= context_.marched.size()) return;
       const Medium& medium = context_.marched[number];
       const Color before = all.left;
-      const Veil veil =
-          march_medium(context_, medium, way_, [&](const Vec3d& place, const Color& part) {
-            scatter(medium, place, part * before);
-          });
+      const Veil veil = march_medium(context_, medium, way_, [&](const Vec3d& place, const Color& part) {
+        scatter(medium, place, part * before);
+      });
       all.light = all.light + veil.light * before;
       all.left = all.left * veil.left;
     };
@@ -96,10 +95,8 @@ class FilledWay {
 void veil_misses(const RenderContext& context, Wavefront& wavefront) {
   for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
     if (wavefront.hits.item[i] != kNoId) continue;
-    const Veil veil =
-        FilledWay(context, wavefront, i, std::numeric_limits<double>::infinity()).veil();
-    wavefront.radiance.set(i,
-                           wavefront.radiance[i] * veil.left + wavefront.rays.throughput[i] * veil.light);
+    const Veil veil = FilledWay(context, wavefront, i, std::numeric_limits<double>::infinity()).veil();
+    wavefront.radiance.set(i, wavefront.radiance[i] * veil.left + wavefront.rays.throughput[i] * veil.light);
   }
 }
 

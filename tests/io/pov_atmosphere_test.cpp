@@ -45,11 +45,12 @@ class PovAtmosphere : public testing::Test {
 TEST_F(PovAtmosphere, FogsAreFogs) {
   EXPECT_EQ(section("fog { distance 8 color rgbft <0.1, 0.3, 0.7, 0.5, 0.25> }", "fog"),
             "[{distance: 8, color: [0.1, 0.3, 0.7], filter: 0.5, transmit: 0.25}]");
-  EXPECT_EQ(section("fog { fog_type 2 distance 8 rgb 1 fog_offset 0.5 fog_alt 2 up y rotate x*90 translate 5 }"
-                    " fog { distance 3 rgb 0 }",
-                    "fog"),
-            "[{distance: 8, color: [1, 1, 1], altitude: 2, offset: 0.5, up: [0, 0, 1]}, {distance: 3, color: "
-            "[0, 0, 0]}]");
+  EXPECT_EQ(
+      section("fog { fog_type 2 distance 8 rgb 1 fog_offset 0.5 fog_alt 2 up y rotate x*90 translate 5 }"
+              " fog { distance 3 rgb 0 }",
+              "fog"),
+      "[{distance: 8, color: [1, 1, 1], altitude: 2, offset: 0.5, up: [0, 0, 1]}, {distance: 3, color: "
+      "[0, 0, 0]}]");
   EXPECT_EQ(section("fog { rgb 1 }", "fog"), "none");
   EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"),
             "'turbulence' of a fog is left out\n");
@@ -72,9 +73,10 @@ TEST_F(PovAtmosphere, ReflectionGrowsWithTheAngle) {
   // One colour is that at grazing angles.
   EXPECT_EQ(look("pigment { rgb 1 } finish { reflection { 0.9 fresnel on } } interior { ior 1.5 }"),
             plain + "reflection_grazing: 0.9, reflection_falloff: fresnel, ior: 1.5");
-  EXPECT_EQ(look("pigment { rgbt 1 } finish { reflection 0.25 conserve_energy } interior { ior 1.5 }"),
-            "ambient: 0, diffuse: 0, reflection: 0.25, conserve_energy: true, transparency: 1, filter: [1, 1, "
-            "1], fresnel: false, ior: 1.5");
+  EXPECT_EQ(
+      look("pigment { rgbt 1 } finish { reflection 0.25 conserve_energy } interior { ior 1.5 }"),
+      "ambient: 0, diffuse: 0, reflection: 0.25, conserve_energy: true, transparency: 1, filter: [1, 1, "
+      "1], fresnel: false, ior: 1.5");
   EXPECT_EQ(warnings("sphere { 0, 1 finish { reflection { 0.5 exponent 2 } } }"),
             "'exponent of reflection' of a finish has no meaning here, and is left out\n");
 }
@@ -92,9 +94,10 @@ TEST_F(PovAtmosphere, InteriorsAreMedia) {
   // A place shows the light there times the scattering, and not a part of it for each direction.
   EXPECT_EQ(media("media { scattering { 1, 0.5 extinction 1 } }"),
             "{medium: {scattering: [2, 2, 2], extinction: 0.25}}");
-  EXPECT_EQ(media("media { emission 1 density { spherical } density { rgb 2 } }"),
-            "{medium: {emission: [2, 2, 2], map_density: {spherical: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, "
-            "transform: {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0]}}}");
+  EXPECT_EQ(
+      media("media { emission 1 density { spherical } density { rgb 2 } }"),
+      "{medium: {emission: [2, 2, 2], map_density: {spherical: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, "
+      "transform: {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0]}}}");
   EXPECT_EQ(media("fade_distance 2 fade_power 2 fade_color <0.5, 0, 1>", ""),
             "{medium: {fade: {distance: 2, power: 2, color: [0.5, 0, 1]}}}");
   EXPECT_EQ(media("fade_distance 2 fade_power 1001 fade_color <0.5, 0, 1>", ""),
@@ -111,7 +114,8 @@ TEST_F(PovAtmosphere, PatternsAskTheSurface) {
   EXPECT_EQ(color("slope { -x, 0.25, 0.75 altitude 2*y, -1, 1 }"),
             "{material: {color: {slope: {direction: [-1, 0, 0], low: 0.25, high: 0.75, altitude: [0, 2, 0], "
             "altitude_low: -1, altitude_high: 1");
-  EXPECT_TRUE(color("aoi").starts_with("{material: {color: {incidence: {map: [[0, [0, 0, 0]], ")) << color("aoi");
+  EXPECT_TRUE(color("aoi").starts_with("{material: {color: {incidence: {map: [[0, [0, 0, 0]], "))
+      << color("aoi");
 }
 
 /// Squares of a grid of places in the plane z = 0.3, coloured by which side of a solid they are on.
@@ -142,8 +146,9 @@ TEST_F(PovAtmosphere, ObjectsArePatternsOfTheirInsides) {
     SCOPED_TRACE(c.solid);
     Scene scene = load_scene(dir.write(
         "scene.pov",
-        std::string("#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { orthographic location <0, 0, "
-                    "-5> direction z up 2.4*y right 2.4*x }\nplane { -z, -0.3 pigment { object { ") +
+        std::string(
+            "#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { orthographic location <0, 0, "
+            "-5> direction z up 2.4*y right 2.4*x }\nplane { -z, -0.3 pigment { object { ") +
             c.solid + " rgb <0.25, 0, 0> rgb <0.75, 0, 0> } } finish { ambient 1 diffuse 0 } }\n"));
     constexpr std::uint32_t kSize = 22;
     scene.film.width = scene.film.height = kSize, scene.integrator.samples = 1;
@@ -161,12 +166,12 @@ TEST_F(PovAtmosphere, ObjectsArePatternsOfTheirInsides) {
 TEST_F(PovAtmosphere, DensityFilesArePatterns) {
   dir.write("ramp.df3", std::string("\0\4\0\1\0\1\0\63\146\314", 10));
   for (const bool smooth : {false, true}) {
-    const Scene scene = load_scene(
-        dir.write("scene.pov", std::string("#version 3.7;\nglobal_settings { assumed_gamma 1 }\n"
-                                           "camera { orthographic location <0.5, 0.5, -5> direction z up y*0.01 "
-                                           "right x }\nplane { -z, -0.5 pigment { density_file df3 "
-                                           "\"ramp.df3\" interpolate ") +
-                                   (smooth ? "1" : "0") + " } finish { ambient 1 diffuse 0 } }\n"));
+    const Scene scene = load_scene(dir.write(
+        "scene.pov", std::string("#version 3.7;\nglobal_settings { assumed_gamma 1 }\n"
+                                 "camera { orthographic location <0.5, 0.5, -5> direction z up y*0.01 "
+                                 "right x }\nplane { -z, -0.5 pigment { density_file df3 "
+                                 "\"ramp.df3\" interpolate ") +
+                         (smooth ? "1" : "0") + " } finish { ambient 1 diffuse 0 } }\n"));
     Scene small = scene;
     small.film.width = 20, small.film.height = 1, small.integrator.samples = 1;
     const Picture picture = render(small, {}).picture;

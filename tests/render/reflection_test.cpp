@@ -98,7 +98,8 @@ TEST(Reflection, IsTakenFromWhatPasses) {
   EXPECT_NEAR(seen(m, 30).x, 0.3, 1e-6);
   EXPECT_NEAR(seen(m, 30).z, 0.32, 1e-6);  // 0.8 (1 - 0.6), as in POV-Ray
   Material varied = varying(0, 1, 0);
-  varied.transparency = 1, varied.filter = Color{1, 1, 1}, varied.fresnel = false, varied.conserve_energy = true;
+  varied.transparency = 1, varied.filter = Color{1, 1, 1}, varied.fresnel = false,
+  varied.conserve_energy = true;
   EXPECT_NEAR(seen(varied, 80).z, 0.6123, 2e-5);
 }
 

@@ -44,9 +44,9 @@ TEST(WhittedMedia, GlowAndAbsorb) {
   medium.emission = {0.1f, 0.2f, 0.3f};
   expect_color(shown(ball_scene(medium)), {0.2, 0.4, 0.6});
   medium.absorption = {0.5f, 1, 2};
-  expect_color(shown(ball_scene(medium, {1, 1, 1})), {std::exp(-1) + 0.2 * (1 - std::exp(-1)),
-                                                       std::exp(-2) + 0.2 * (1 - std::exp(-2)),
-                                                       std::exp(-4) + 0.15 * (1 - std::exp(-4))});
+  expect_color(shown(ball_scene(medium, {1, 1, 1})),
+               {std::exp(-1) + 0.2 * (1 - std::exp(-1)), std::exp(-2) + 0.2 * (1 - std::exp(-2)),
+                std::exp(-4) + 0.15 * (1 - std::exp(-4))});
 }
 
 /// A density of 1 - r within the ball.
@@ -84,12 +84,14 @@ TEST(WhittedMedia, ScatterLightOnce) {
       Scene scene = ball_scene(medium);
       scene.lights = {DirectionalLight{{0, -1, 0}, {0.7f, 0.7f, 0.7f}}};
       // Light comes at a right angle, through the ball from its upper side.
-      const double square = 1 + g * g, phase = (1 - g * g) / (square * std::sqrt(square)) / (4 * std::numbers::pi);
+      const double square = 1 + g * g,
+                   phase = (1 - g * g) / (square * std::sqrt(square)) / (4 * std::numbers::pi);
       const double sigma = 0.5 * extinction;
       const double want = integral(
           [&](double z) {
             const double above = std::sqrt(1 - z * z);
-            return 0.5 * phase * 0.7 * std::numbers::pi * std::exp(-sigma * (1 - z)) * std::exp(-sigma * above);
+            return 0.5 * phase * 0.7 * std::numbers::pi * std::exp(-sigma * (1 - z)) *
+                   std::exp(-sigma * above);
           },
           -1, 1);
       expect_color(shown(scene), Vec3d{1, 1, 1} * want, 2e-5);

@@ -103,8 +103,8 @@ class InsideWriter {
       const double offset = a.number("a distance");
       if (!(length(n) > 0)) return std::nullopt;
       const Vec3d u = n / length(n);
-      return fmt::format("({})*{}+({})*{}+({})*{}-({})", u.x, coordinate(own, 0), u.y, coordinate(own, 1), u.z,
-                         coordinate(own, 2), offset);
+      return fmt::format("({})*{}+({})*{}+({})*{}-({})", u.x, coordinate(own, 0), u.y, coordinate(own, 1),
+                         u.z, coordinate(own, 2), offset);
     }
     if (k == "cylinder" || k == "cone") return round(k == "cone", a, own);
     if (k == "torus") {
@@ -144,9 +144,10 @@ class InsideWriter {
                 linear = a.vector("three numbers");
     const double rest = a.number("a number");
     const std::string x = coordinate(own, 0), y = coordinate(own, 1), z = coordinate(own, 2);
-    return fmt::format("({})*{}^2+({})*{}^2+({})*{}^2+({})*{}*{}+({})*{}*{}+({})*{}*{}+({})*{}+({})*{}+({})*{}+({})",
-                       squares.x, x, squares.y, y, squares.z, z, products.x, x, y, products.y, x, z,
-                       products.z, y, z, linear.x, x, linear.y, y, linear.z, z, rest);
+    return fmt::format(
+        "({})*{}^2+({})*{}^2+({})*{}^2+({})*{}*{}+({})*{}*{}+({})*{}*{}+({})*{}+({})*{}+({})*{}+({})",
+        squares.x, x, squares.y, y, squares.z, z, products.x, x, y, products.y, x, z, products.z, y, z,
+        linear.x, x, linear.y, y, linear.z, z, rest);
   }
 
   Context& context_;
