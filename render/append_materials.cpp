@@ -16,6 +16,8 @@ std::uint32_t append_materials(std::vector<Material> materials, std::vector<Text
       if (texture != kNoId) texture += first_texture;
     });
   }
+  for (Medium& medium : media)
+    if (medium.density_texture != kNoId) medium.density_texture += first_texture;
   for (Texture& texture : textures)
     if (texture.pattern)
       for_each_nested_texture(*texture.pattern, [first_texture](std::uint32_t& nested) {

@@ -51,7 +51,7 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
   s.exponent = highlight_exponent(m.specular, m.phong);
   s.varies = has_textures(m) || m.filter || m.opacity != 1 || (!m.emits_behind && glows(m)) || !m.surface ||
-             m.interior != kNoId;
+             m.interior != kNoId || m.reflection_varies || !m.fresnel || m.conserve_energy;
   s.reflection = m.reflection;
   s.transparency = m.transparency, s.ior = m.ior;
   return s;
@@ -96,23 +96,10 @@ std::vector<LightSource> light_sources(const Scene& scene) {
 }
 
 void enclose_camera(const Camera& camera, RenderContext& context) {
+  if (context.tracks_insides) context.camera_insides = insides_at(*context.world, Vec3f(camera.from));
   if (!context.tracks_dielectrics) return;
   context.camera_place = Vec3f(camera.from);
   context.camera_dielectrics = dielectrics_at(context, context.camera_place);
-}
-
-/// See RenderContext::interiors.
-static std::vector<Vec3d> interiors(const Scene& scene, const World& world) {
-  std::vector<Vec3d> extinctions;
-  if (!traits(scene.integrator.kind).light_from_points) return extinctions;
-  for (std::size_t i = 0; i < world.materials.size(); ++i) {
-    const Material& m = world.materials[i];
-    if (m.interior == kNoId || scene.media[m.interior].grid) continue;
-    const Medium& medium = scene.media[m.interior];
-    extinctions.resize(world.materials.size(), {0, 0, 0});
-    extinctions[i] = Vec3d(medium.absorption) + Vec3d(medium.scattering);
-  }
-  return extinctions;
 }
 
 void set_visibility(RenderContext& context) {
@@ -139,23 +126,23 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.sampled = &lights;
   c.lights = light_sources(scene);
   c.area_lights = area_lights(lights, textures, c.settings);
-  c.interiors = interiors(scene, world);
   c.tracks_dielectrics = world.tracks_dielectrics;
   set_visibility(c);
-  if (c.tracks_dielectrics) {
+  c.tracks_insides = world.tracks_insides;
+  if (c.tracks_insides) c.fogs = scene.fogs, c.marched = scene.media;
+  if (c.tracks_dielectrics)
     for (const Medium& medium : scene.media) c.media.emplace_back(medium);
-    c.outer_medium = scene.medium;
-    enclose_camera(scene.camera, c);
-  }
+  if (c.tracks_dielectrics || c.tracks_insides) c.outer_medium = scene.medium;
+  enclose_camera(scene.camera, c);
   c.background = scene.background, c.background_texture = scene.background_texture;
   c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
-  c.some_only_send_rays = traits(c.settings.kind).light_from_points &&
+  c.some_only_send_rays = traits(c.settings.kind).light_from_points && !c.tracks_insides &&
                           std::ranges::any_of(c.materials, &ShadingMaterial::only_sends_rays);
   if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
-  c.opaque_background =
-      !(c.background == Color{0, 0, 0}) || c.background_texture != kNoId || lights.has_environment();
+  c.opaque_background = !(c.background == Color{0, 0, 0}) || c.background_texture != kNoId ||
+                        lights.has_environment() || !c.fogs.empty();
   // Shadow catchers count what they cover, and curved views may leave out a part of the picture.
   c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches &&
                  !is_curved(c.camera.projection);

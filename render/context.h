@@ -10,6 +10,7 @@
 #include "render/camera.h"
 #include "render/dielectric_stack.h"
 #include "render/geometry.h"
+#include "render/insides.h"
 #include "render/medium/medium_tracker.h"
 #include "render/sampling/warp.h"
 #include "render/scene.h"
@@ -53,11 +54,13 @@ struct RenderContext {
   const RenderContext* without_others = nullptr;
   std::vector<MediumTracker> media;    ///< numbered as in Scene::media
   std::uint32_t outer_medium = kNoId;  ///< the medium outside of all solids
-  /// Extinction of homogeneous interiors, numbered as World::materials, for Whitted's model; empty if no
-  /// material has one.
-  std::vector<Vec3d> interiors;
   DielectricStack camera_dielectrics;  ///< the solids around the camera
   Vec3f camera_place;                  ///< where `camera_dielectrics` holds
+  // What fills the ways of rays in Whitted's model:
+  bool tracks_insides = false;      ///< any of the following
+  std::span<const Fog> fogs;        ///< Scene::fogs
+  std::span<const Medium> marched;  ///< Scene::media
+  Insides camera_insides;           ///< the solids around the camera
   Color background, ambient_light;
   std::uint32_t background_texture = kNoId;  ///< Scene::background_texture
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture

@@ -76,6 +76,13 @@ static bool needs_dielectrics(const Scene& scene) {
          });
 }
 
+/// Whether fog or media fill the ways of rays in Whitted's model.
+static bool needs_insides(const Scene& scene) {
+  if (!traits(scene.integrator.kind).light_from_points) return false;
+  return !scene.fogs.empty() || scene.medium != kNoId ||
+         std::ranges::any_of(scene.materials, [](const Material& m) { return m.interior != kNoId; });
+}
+
 /// Whether the object bounds an inside that light enters.
 static bool is_entered(const Object& object, const Scene& scene) {
   const auto lets_in = [&](std::uint32_t material) { return lets_light_in(scene, material); };
@@ -219,6 +226,7 @@ class WorldBuilder {
 
   World build() {
     world_.tracks_dielectrics = needs_dielectrics(scene_);
+    world_.tracks_insides = needs_insides(scene_);
     world_.has_catchers = catches_;
     set_light_lists();
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
@@ -440,6 +448,8 @@ class WorldBuilder {
     own.material = object.material, own.solid = solid(object, id), own.name = object.name;
     own.listed = object.listed, own.light_list = object.light_list;
     own.shadow_catcher = object.shadow_catcher;
+    own.hollow = combination_ != kNoId ? world_.objects[combination_].hollow : object.hollow;
+    own.has_inside = world_.tracks_insides && oktett::has_inside(object, scene_);
     return own;
   }
 
@@ -611,6 +621,7 @@ World with_meshes(const World& others, const Scene& scene, std::size_t first,
     const auto& shape = std::get<MeshShape>(object.shape);
     ObjectMaterials& own = world.objects.emplace_back();
     own.material = object.material, own.slots = shape.slot_materials, own.name = object.name;
+    own.hollow = object.hollow, own.has_inside = world.tracks_insides && has_inside(object, scene);
     if (shape.mesh == nullptr) continue;
     shown.push_back(id);
     if (world.tracks_dielectrics && is_entered(object, scene))
@@ -761,6 +772,15 @@ bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user) {
   if (found) return true;
   if (const std::uint32_t inner = visit_objects_around(world, hit, look); inner != kNoId) look(inner, false);
   return found;
+}
+
+bool is_hollow(const World& world, const Hit& hit, std::uint32_t user) {
+  bool hollow = user < world.objects.size() && world.objects[user].hollow;
+  if (hollow) return true;
+  visit_objects_around(world, hit, [&](std::uint32_t number, bool) {
+    return hollow = hollow || world.objects[number].hollow;
+  });
+  return hollow;
 }
 
 std::uint16_t find_light_lists(const World& world, const Hit& hit, std::uint32_t user) {

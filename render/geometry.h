@@ -40,6 +40,8 @@ struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
   std::uint16_t listed = 0;          ///< as in Object
   bool shadow_catcher = false;       ///< as in Object
+  bool hollow = false;               ///< as in Object; of an operand that of the combination
+  bool has_inside = false;           ///< as has_inside() says, if Whitted's model needs to know
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
   /// The object whose inside its surfaces bound: itself, or the combination that it is an operand of. kNoId
   /// if it has no inside, or if paths need not know.
@@ -91,6 +93,7 @@ struct World {
   Box bounds;                         ///< of all that is bounded
   bool tracks_dielectrics = false;    ///< paths must know which solids they are in
   bool has_enclosing_solids = false;  ///< there are any that they must know of
+  bool tracks_insides = false;        ///< in Whitted's model something fills the ways of rays
   bool has_holes = false;             ///< some material is not opaque everywhere, or is no surface at all
   bool has_clear = false;             ///< some material is transparent
   bool has_catchers = false;          ///< there are shadow catchers
@@ -148,6 +151,9 @@ World without_others(const World& world);
 /// Whether the object at a hit, or an instance or a combination around it, is a shadow catcher. `user` is
 /// that of the hit's surface interaction.
 bool is_shadow_catcher(const World& world, const Hit& hit, std::uint32_t user);
+
+/// Whether the object at a hit, or an instance around it, is hollow. `user` as before.
+bool is_hollow(const World& world, const Hit& hit, std::uint32_t user);
 
 /// Which lists of lights light the object at a hit, as LightPoint::lists: lists that name it, or an instance
 /// or a combination around it, and those of LightList::lights_others that do not. `user` is that of the hit's

@@ -72,8 +72,10 @@ float greatest_albedo(const Material& m, std::span<const Texture> textures) {
   const Color color = m.color * bounds(m.color_texture).greatest * bounds(m.tint_texture).greatest;
   const float least_exponent = m.phong * bounds(m.phong_texture).least.x;
   // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere.
-  const float mirror = most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +
-                       most(m.reflection, m.reflection_texture, 1);
+  const float mirror =
+      most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +
+      std::max(most(m.reflection, m.reflection_texture, 1),
+               m.reflection_varies ? most(m.reflection_grazing, m.reflection_grazing_texture, 1) : 0);
   const float transparency = most(m.transparency, m.transparency_texture, 1);
   Color sum = color * most(m.diffuse, m.diffuse_texture, kAny) +
               m.specular_color * bounds(m.specular_texture).greatest * mirror;

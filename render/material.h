@@ -128,11 +128,20 @@ struct Material {
   float diffuse = 0.8f;           ///< [0, inf)
   float specular = 0;             ///< weight of the Phong highlight, [0, inf)
   float phong = 32;               ///< Phong exponent, [0, inf)
-  float reflection = 0;           ///< weight of the mirror ray, [0, 1]
+  float reflection = 0;           ///< weight of the mirror ray, [0, 1]; of one that varies, head-on
+  /// If reflection_varies, the weight of the mirror ray at grazing angles, [0, 1]. Between it grows with 1 -
+  /// c to the power of the falloff, > 0, c being the cosine of the angle to the normal; or, if that is 0, as
+  /// Fresnel's equations say of `ior`.
+  float reflection_grazing = 0, reflection_falloff = 1;
+  bool reflection_varies = false;
   float transparency = 0;         ///< weight of light that passes through, [0, 1]; 0 = opaque
   std::optional<Color> filter{};  ///< colour of that light (MTL `Tf`); not given: `color`, with its texture
   float ior = 1.5f;               ///< index of refraction inside relative to outside, > 0
-  float opacity = 1;              ///< part of the surface that is there, [0, 1]; the rest is holes
+  // In Whitted's model:
+  bool fresnel = true;  ///< transparency is split by Fresnel's equations; false: all of it is refracted, and
+                        ///< where nothing can be, all light is mirrored
+  bool conserve_energy = false;  ///< what the weight of the mirror ray takes is not refracted
+  float opacity = 1;             ///< part of the surface that is there, [0, 1]; the rest is holes
   /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other
   /// members, and so is all that Whitted's model shows of a material without textures: see
   /// resemble_principled.
@@ -149,6 +158,7 @@ struct Material {
   // Each multiplies the number of its name.
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
+  std::uint32_t reflection_grazing_texture = kNoId;
   std::uint32_t ior_texture = kNoId, filter_texture = kNoId;
   /// These multiply `color` and `opacity` once more: colours of vertices beside an image.
   std::uint32_t tint_texture = kNoId, tint_opacity_texture = kNoId;
@@ -180,7 +190,9 @@ inline constexpr PhongNumber kPhongNumbers[] = {
     {"reflection", &Material::reflection, &Material::reflection_texture, "weight of the mirrored ray",
      kUnitInterval},
     {"transparency", &Material::transparency, &Material::transparency_texture,
-     "weight of light that passes through", kUnitInterval}};
+     "weight of light that passes through", kUnitInterval},
+    {"reflection_grazing", &Material::reflection_grazing, &Material::reflection_grazing_texture,
+     "weight of the mirrored ray at grazing angles, if it is not that of `reflection`", kUnitInterval}};
 
 /// Calls f(index) for each member of a material, which may be const, that is an index of a texture.
 template <class AnyMaterial, class F>
@@ -220,7 +232,7 @@ PrincipledMaterial principled_like(const Material& m);
 
 /// The numbers of kPhongNumbers at a place, in that order.
 struct PhongValues {
-  float ambient, diffuse, specular, phong, reflection, transparency;
+  float ambient, diffuse, specular, phong, reflection, transparency, reflection_grazing;
 };
 
 /// What comes near to principled parameters in Whitted's model: smooth metal is a mirror, smooth glass is

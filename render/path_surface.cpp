@@ -84,7 +84,7 @@ void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool fron
 
 /// Whether its parameters depend on the hit or the path, beside textures.
 bool varies_with_hit(const Material& m) {
-  if (!m.principled) return false;
+  if (!m.principled) return m.reflection_varies;
   const PrincipledParameters& p = m.principled->parameters;
   return p.anisotropy > 0 || disperses(p);
 }

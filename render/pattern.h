@@ -120,10 +120,10 @@ using Pattern =
     std::variant<CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern,
                  AgatePattern, AngularPattern, BoxedPattern, BrickPattern, CellsPattern, CracklePattern,
                  CubicPattern, CylindricalPattern, DentsPattern, DoubleSpiralPattern, FractalPattern,
-                 FunctionPattern, GranitePattern, HexagonPattern, LayersPattern, LeopardPattern,
-                 LinearPattern, OnionPattern, OverPattern, PlanarPattern, ProjectedPattern, QuiltedPattern,
-                 RingsPattern, RipplesPattern, SphericalPattern, SpiralPattern, TexturePattern, WavesPattern,
-                 WrinklesPattern>;
+                 FunctionPattern, GranitePattern, HexagonPattern, IncidencePattern, LayersPattern,
+                 LeopardPattern, LinearPattern, OnionPattern, OverPattern, PlanarPattern, ProjectedPattern,
+                 QuiltedPattern, RingsPattern, RipplesPattern, SlopePattern, SphericalPattern, SpiralPattern,
+                 TexturePattern, VoxelPattern, WavesPattern, WrinklesPattern>;
 
 /// What a pattern shows at one of its values.
 struct PatternEntry {
@@ -162,6 +162,10 @@ class PatternTextures {
   virtual Color color(std::uint32_t texture, const Vec3d& position) const = 0;
   /// The colour of a texture at these texture coordinates, of an image not filtered.
   virtual Color image(std::uint32_t texture, const Vec2f& uv) const = 0;
+  /// The unit normal of the surface on the side of the viewer, and the unit vector to the viewer, in the
+  /// world; zero where there is no surface.
+  virtual Vec3d normal() const { return {0, 0, 0}; }
+  virtual Vec3d to_viewer() const { return {0, 0, 0}; }
 };
 
 /// The value in [0, 1] of the pattern at a point of its own space; 0 where the point is not finite, and for

@@ -139,4 +139,38 @@ double raw_value(const TexturePattern& t, const Vec3d& p, const PatternFrame& fr
   return 0.297 * double{c.x} + 0.589 * double{c.y} + 0.114 * double{c.z};
 }
 
+/// From 1, where both point the same way, to 0; 1/2 if one is zero.
+static double likeness(const Vec3d& a, const Vec3d& b) {
+  const double size = length(a) * length(b);
+  if (!(size > 0)) return 0.5;
+  const double cosine = std::clamp(dot(a, b) / size, -1.0, 1.0);
+  return 1 - portable::atan2(std::sqrt((1 - cosine) * (1 + cosine)), cosine) / std::numbers::pi;
+}
+
+double raw_value(const IncidencePattern&, const Vec3d&, const PatternFrame& frame) {
+  if (frame.others == nullptr) return 0.5;
+  return likeness(frame.others->normal(), frame.others->to_viewer());
+}
+
+double raw_value(const SlopePattern& s, const Vec3d& p, const PatternFrame& frame) {
+  const Vec3d normal = frame.others == nullptr ? Vec3d{0, 0, 0} : frame.others->normal();
+  const double slope = (likeness(normal, s.direction) - s.low) / (s.high - s.low);
+  const double weight = length(s.altitude);
+  if (weight == 0) return slope;
+  const double height = (dot(p, s.altitude) / weight - s.altitude_low) / (s.altitude_high - s.altitude_low);
+  const double all = length(s.direction);
+  return (slope * all + height * weight) / (all + weight);
+}
+
+double raw_value(const VoxelPattern& v, const Vec3d& p, const PatternFrame&) {
+  if (v.grid == nullptr) return 0;
+  Vec3d place;
+  for (int k = 0; k < 3; ++k) {
+    if (!(p[k] >= 0 && p[k] <= 1)) return 0;
+    place[k] = p[k] * (v.grid->size(k) - 1);
+    if (!v.smooth) place[k] = std::floor(place[k]);
+  }
+  return v.grid->at(place);
+}
+
 }  // namespace oktett

@@ -3,10 +3,12 @@
 /// have there. Those of noise have the same kinds of forms at other places.
 
 #include <cstdint>
+#include <memory>
 
 #include "core/description.h"
 #include "core/vec3.h"
 #include "kernels/functions/tape_data.h"
+#include "render/medium/density_grid.h"
 
 namespace oktett {
 
@@ -183,6 +185,9 @@ struct HexagonPattern {
   bool operator==(const HexagonPattern&) const = default;
 };
 
+OKTETT_PLAIN_PATTERN(IncidencePattern, "incidence",
+                     "by the angle at which a surface is seen: from 1 head-on to 0.5 at grazing angles");
+
 /// The marble of POV-Ray.
 struct LayersPattern {
   static constexpr ShapeInfo kShapeInfo{"layers",
@@ -239,6 +244,30 @@ struct RipplesPattern {
 };
 
 OKTETT_PLAIN_PATTERN(SphericalPattern, "spherical", "from 1 at the origin to 0 at the distance 1 and beyond");
+
+/// By the angle between a direction and the normal of the surface, both in the world, and by height.
+struct SlopePattern {
+  Vec3d direction{0, 1, 0};
+  double low = 0, high = 1;
+  Vec3d altitude{0, 0, 0};
+  double altitude_low = 0, altitude_high = 1;
+
+  static constexpr ShapeInfo kShapeInfo{
+      "slope", "by the angle between a direction and the normal, in the world: 1 along it, 0 against it"};
+  void describe(auto& p) {
+    p.field("direction", direction, kCoordinate, "in the world, of any length but 0");
+    p.check(length(direction) > 0, "direction", "the direction must not be zero");
+    p.field("low", low, "what becomes 0");
+    p.field("high", high, "what becomes 1");
+    p.check(low != high, "high", "'low' and 'high' must differ");
+    p.field("altitude", altitude, kCoordinate,
+            "instead of 0: the mean with the height along it, each weighted by the length of its direction");
+    p.field("altitude_low", altitude_low, "the height that counts as 0");
+    p.field("altitude_high", altitude_high, "the height that counts as 1");
+    p.check(altitude_low != altitude_high, "altitude_high", "'altitude_low' and 'altitude_high' must differ");
+  }
+  bool operator==(const SlopePattern&) const = default;
+};
 
 /// A screw about z.
 struct SpiralPattern {
@@ -304,6 +333,24 @@ struct ProjectedPattern {
         "the angle around the ring of radius 1");
   }
   bool operator==(const ProjectedPattern&) const = default;
+};
+
+/// A file of densities.
+struct VoxelFile {
+  std::shared_ptr<const DensityGrid>& grid;
+};
+
+/// Densities in the cube from 0 to 1, 0 outside.
+struct VoxelPattern {
+  std::shared_ptr<const DensityGrid> grid{};
+  bool smooth = true;
+
+  static constexpr ShapeInfo kShapeInfo{"voxels", "densities of a file in the cube from 0 to 1, 0 outside"};
+  void describe(auto& p) {
+    p.required("file", VoxelFile{grid}, "a grid of densities, or a DF3 file of POV-Ray");
+    p.field("smooth", smooth, "whether it is interpolated between them");
+  }
+  bool operator==(const VoxelPattern&) const = default;
 };
 
 /// Waves of many lengths from random points at the distance 1 from the origin.

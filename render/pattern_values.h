@@ -20,6 +20,7 @@ double raw_value(const AngularPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const BoxedPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const CylindricalPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const FunctionPattern& f, const Vec3d& p, const PatternFrame&);
+double raw_value(const IncidencePattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const LayersPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const LeopardPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const LinearPattern& l, const Vec3d& p, const PatternFrame&);
@@ -28,10 +29,12 @@ double raw_value(const PlanarPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const QuiltedPattern& q, const Vec3d& p, const PatternFrame&);
 double raw_value(const RingsPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const RipplesPattern& r, const Vec3d& p, const PatternFrame&);
+double raw_value(const SlopePattern& s, const Vec3d& p, const PatternFrame&);
 double raw_value(const SphericalPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const SpiralPattern& s, const Vec3d& p, const PatternFrame&);
 double raw_value(const DoubleSpiralPattern& s, const Vec3d& p, const PatternFrame&);
 double raw_value(const TexturePattern& t, const Vec3d& p, const PatternFrame&);
+double raw_value(const VoxelPattern& v, const Vec3d& p, const PatternFrame&);
 double raw_value(const WavesPattern& w, const Vec3d& p, const PatternFrame&);
 
 // Of cells and of noise: pattern_cells.cpp. Of patterns with kValues the number of the value.

@@ -193,6 +193,7 @@ void recentre(Scene& scene) {
     camera.motion = moved_motion(camera.motion, to, from);
   }
   move_lights(origin, to, from, scene);
+  for (Fog& fog : scene.fogs) fog.offset -= dot(origin, normalize(fog.up));
   for (Medium& medium : scene.media) medium.grid_place = to * medium.grid_place;
 }
 

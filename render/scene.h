@@ -19,6 +19,7 @@
 #include "core/vec3.h"
 #include "kernels/closed/shape_data.h"
 #include "kernels/exact_form.h"
+#include "render/fog.h"
 #include "render/light/environment_picture.h"
 #include "render/light/light_fade.h"
 #include "render/light/light_profile.h"
@@ -522,6 +523,9 @@ struct Object {
   bool shadow_catcher = false;
   /// Bit i: it is on Scene::light_lists[i], and so is all that it shows.
   std::uint16_t listed = 0;
+  /// Fog is in the solid, too; so it is in all that an instance shows that is. Not of operands of
+  /// combinations.
+  bool hollow = false;
   /// The list of the light that its material emits, as LightTraits::list.
   std::uint32_t light_list = kNoId;
 };
@@ -547,6 +551,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Medium> media;
   std::uint32_t medium = kNoId;  ///< index into `media`: what fills the space outside of all solids
+  std::vector<Fog> fogs;         ///< in Whitted's model, outside of solids
   std::vector<Light> lights;
   std::vector<LightTraits> light_traits;  ///< of the light of the same number; may be shorter
   std::vector<LightList> light_lists;     ///< at most kMostLightLists

@@ -76,6 +76,9 @@ struct ShadingColumns {
   std::int32_t exponent[kMost];
   /// Bit k: the material of hit k `varies`, or `sends_rays`. Lanes after the last hit repeat its bits.
   std::uint64_t varying, sending;
+  /// Bit k: light that passes hit k is not split by Fresnel's equations, see Material::fresnel. Of hits that
+  /// are `varying` alone.
+  std::uint64_t unsplit;
 
   RaisedPoints* raised = nullptr;  ///< of the hits
 };

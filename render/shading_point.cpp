@@ -84,6 +84,9 @@ class NestedTextures final : public PatternTextures {
     return texture_color(textures_, texture, place, depth_);
   }
 
+  Vec3d normal() const override { return place_.normal; }
+  Vec3d to_viewer() const override { return place_.to_viewer; }
+
  private:
   const Textures& textures_;
   const TexturePlace& place_;
@@ -250,9 +253,10 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
 }
 
 PhongValues phong_values(const RenderContext& c, const Material& m, const TexturePlace& place) {
-  PhongValues values{m.ambient, m.diffuse, m.specular, m.phong, m.reflection, m.transparency};
-  float* const at[] = {&values.ambient, &values.diffuse,    &values.specular,
-                       &values.phong,   &values.reflection, &values.transparency};
+  PhongValues values{m.ambient,    m.diffuse,      m.specular,          m.phong,
+                     m.reflection, m.transparency, m.reflection_grazing};
+  float* const at[] = {&values.ambient,    &values.diffuse,      &values.specular,          &values.phong,
+                       &values.reflection, &values.transparency, &values.reflection_grazing};
   for (std::size_t i = 0; i < std::size(kPhongNumbers); ++i)
     *at[i] = textured(c, *at[i], m.*kPhongNumbers[i].texture, kPhongNumbers[i].range, place);
   return values;
@@ -437,9 +441,13 @@ MeshPoint place_on_mesh(const RenderContext& context, const SurfaceInteraction& 
 /// What the textures of a material ask of a hit.
 class TexturedHit {
  public:
-  TexturedHit(const RenderContext& context, const Material& m, const SurfaceInteraction& s, const Hit& hit)
+  /// `direction`: of the ray, of any length.
+  TexturedHit(const RenderContext& context, const Material& m, const SurfaceInteraction& s, const Hit& hit,
+              const Vec3f& direction)
       : context_(context), m_(m), s_(s), hit_(hit) {
     place.uv = s.uv;
+    place.to_viewer = normalize(-Vec3d(direction));
+    set_normal(s.shading_normal);
     const TextureNeeds needs = texture_needs(context.texture_list, m);
     if (needs.second_uvs) {
       second_ = by_second_uvs(context, s, hit);
@@ -450,6 +458,12 @@ class TexturedHit {
     to_world_ = object_transform(*context.world->accel, hit);
     to_object_ = to_world_.inverse();
     place.position = to_object_.point(Vec3d(s.position));
+  }
+
+  /// Sets what patterns know of the normal.
+  void set_normal(const Vec3f& normal) {
+    place.normal = Vec3d(normal);
+    if (dot(Vec3d(s_.geometric_normal), place.to_viewer) < 0) place.normal = -place.normal;
   }
 
   /// Sets how the places change across a pixel.
@@ -534,7 +548,8 @@ class TexturedHit {
 /// Where the textures of a material are looked up at a hit whose footprint is not known.
 TexturePlace texture_place(const RenderContext& context, const Material& m, const Ray& ray, const Hit& hit) {
   if (!has_textures(m)) return {};
-  return TexturedHit(context, m, surface_interaction(*context.world->accel, ray, hit), hit).place;
+  return TexturedHit(context, m, surface_interaction(*context.world->accel, ray, hit), hit, ray.direction)
+      .place;
 }
 
 using OneFloat = Simd<float, 1, ScalarIsa>;
@@ -545,6 +560,15 @@ void face_ray(ShadingPoint& p, const Vec3f& shading_normal) {
   p.front = none(face_ray(broadcast<OneFloat>(p.direction), broadcast<OneFloat>(p.surface.geometric_normal),
                           broadcast<OneFloat>(shading_normal), ng, ns));
   p.ng = only_lane(ng), p.ns = only_lane(ns);
+}
+
+/// The weight of the mirrored ray by the angle at which the ray arrives.
+float varying_reflection(const ShadingPoint& p) {
+  const double cosine = std::clamp(-static_cast<double>(dot(p.direction, p.ns)), 0.0, 1.0);
+  const double falloff = p.material->reflection_falloff, ior = p.ior;
+  const double part =
+      falloff > 0 ? portable::pow(1 - cosine, falloff) : fresnel(cosine, p.front ? ior : 1 / ior);
+  return p.values.reflection + (p.values.reflection_grazing - p.values.reflection) * static_cast<float>(part);
 }
 
 /// What a hit knows of the frame of its normal, beyond that.
@@ -586,11 +610,12 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   Vec3f ns = s.shading_normal;
   HitFrame frame;
   if (textured_here) {
-    TexturedHit textures(context, m, s, hit);
+    TexturedHit textures(context, m, s, hit, ray.direction);
     Vec3f x, y;
     pixel_vectors(context, ray, hit, s, history, x, y);
     textures.set_footprints(x, y);
     ns = textures.shading_normal();
+    textures.set_normal(ns);
     if (by_path) frame = {textures.coat_normal(), textures.stretch()};
     place = textures.place;
   }
@@ -606,6 +631,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   face_ray(p, ns);
   if (p.principled && (frame.coat_normal || frame.stretch)) set_frame(p, frame, *p.principled);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
+  if (m.reflection_varies && !m.principled) p.values.reflection = varying_reflection(p);
   return p;
 }
 
@@ -675,7 +701,8 @@ struct StraightFace {
 };
 
 /// Of Phong's model.
-FaceSplit split_at(const StraightFace& face, double transparency) {
+FaceSplit split_at(const StraightFace& face, const Material& m, double transparency) {
+  if (!m.fresnel && !m.principled) return {{transparency, transparency, transparency}, 0};
   const double reflectance = face.inside ? fresnel(face.before, face.ior) : 1;
   const double passed = transparency * (1 - reflectance);
   return {{passed, passed, passed}, transparency * reflectance};
@@ -713,7 +740,7 @@ StraightPassage straight_passage(const RenderContext& context, const Ray& ray, c
   TexturePlace place;
   if (has_textures(m)) {
     whole = surface_interaction(*context.world->accel, ray, hit);
-    textures.emplace(context, m, *whole, hit);
+    textures.emplace(context, m, *whole, hit, ray.direction);
     place = textures->place;
   }
   const float opacity = opacity_at(context, m, place), hole = 1 - opacity;
@@ -727,7 +754,7 @@ StraightPassage straight_passage(const RenderContext& context, const Ray& ray, c
   const Color color = color_at(context, m, place);
   const FaceSplit split =
       by_path ? split_at(face, principled_at(context, *m.principled, color, place), passage.front)
-              : split_at(face, static_cast<double>(transparency_at(context, m, place)));
+              : split_at(face, m, static_cast<double>(transparency_at(context, m, place)));
   const Color filter = by_path ? color : filter_at(context, m, place).value_or(color);
   for (int k = 0; k < 3; ++k)
     passage.passed[k] = filter[k] * (static_cast<float>(split.passed[k]) * opacity) + passage.passed[k];

@@ -28,6 +28,7 @@ struct TexturePlace : UvPlace {
   Vec3d position;  ///< in the object's own space
   UvPlace second;  ///< of textures whose uv_layer is 1
   MeshPoint on_mesh;
+  Vec3d normal{0, 0, 0}, to_viewer{0, 0, 0};  ///< as of PatternTextures
 };
 
 /// The textures of a scene, and what reads its images (null: they are white).

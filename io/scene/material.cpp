@@ -105,6 +105,21 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, PrincipledK
   resemble_principled(m);
 }
 
+/// Material::reflection_falloff: a number greater than 0, or `fresnel`.
+struct ReflectionFalloff {
+  float& power;
+};
+constexpr Range kFalloffs{0, 1000, true};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, ReflectionFalloff& falloff) {
+  falloff.power = 0;
+  if (load.values.text(node) != "fresnel") falloff.power = load.values.single(node, kFalloffs);
+}
+
+std::string schema_of(Schema&, const Range&, const ReflectionFalloff&) {
+  return Schema::any_of({Schema::words({"fresnel"}), Schema::number(kFalloffs)});
+}
+
 /// The keys of Phong's model.
 struct PhongKeys {
   Material& m;
@@ -122,6 +137,10 @@ struct PhongKeys {
       p.field(number.name, Textured<float>{m.*number.value, m.*number.texture}, number.range, number.meaning);
     p.field("ior", Textured<float>{m.ior, m.ior_texture}, kPositive,
             "index of refraction inside relative to outside");
+    p.optional("reflection_falloff", ReflectionFalloff{m.reflection_falloff},
+               "power of 1 - cosine by which reflection grows to that at grazing angles; or `fresnel`");
+    p.field("fresnel", m.fresnel, "`whitted`: light that passes is less what Fresnel's equations mirror");
+    p.field("conserve_energy", m.conserve_energy, "`whitted`: light that passes is less what is mirrored");
     p.optional("roughness", Textured<float>{rough.parameters.roughness, rough.roughness_texture},
                kUnitInterval, "makes `path` use a principled material of this colour");
     p.optional("metallic", Textured<float>{rough.parameters.metallic, rough.metallic_texture}, kUnitInterval,
@@ -248,7 +267,9 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& 
   load.warn_if_unused(fields, "map_emission", dark, "'emission', which it multiplies, is black");
   load.warn_if_unused(fields, "emits", dark, "'emission' is black");
   load.warn_if_unused(fields, "light_group", dark, "'emission' is black");
-  const bool shines = m.principled || m.specular > 0 || m.reflection > 0 || m.transparency > 0;
+  const bool shines =
+      m.principled || m.specular > 0 || m.reflection > 0 || m.reflection_varies || m.transparency > 0;
+  load.warn_if_unused(fields, "reflection_falloff", !m.reflection_varies, "there is no 'reflection_grazing'");
   load.warn_if_unused(fields, "map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
   load.warn_if_unused(fields, "normal_scale", m.normal_texture == kNoId, "there is no 'map_normal'");
   load.warn_if_unused(fields, "bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
@@ -260,6 +281,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   MaterialKeys keys{{m}, {m}};
   const Fields fields = read_described(load, node, keys.kMap, keys);
   if (fields["filter"]) m.filter = keys.phong.filter, m.filter_texture = keys.phong.filter_texture;
+  m.reflection_varies = fields["reflection_grazing"] != nullptr;
   finish_roughness(fields, keys.phong.rough, m);
   refuse_normal_pattern(load, fields["map_normal"], m.normal_texture);
   if (fields["principled"]) refuse_phong_keys(node, keys.phong);

@@ -53,11 +53,22 @@ struct MediumKeys {
     p.field("emission", medium.emission, "radiance given off per unit length");
     p.field("anisotropy", medium.anisotropy, Range{-most, most}, "mean cosine of scattering");
     p.field("density", density, kNonNegative, "multiplies absorption, scattering and emission");
+    p.choice("phase", medium.phase, kPhases,
+             "`whitted`: which way light is scattered; others than the first have no anisotropy");
+    p.field("extinction", medium.extinction, kNonNegative,
+            "`whitted`: part of what is scattered that light loses");
+    p.field("steps", medium.steps, whole(1, kMostMediumSteps),
+            "`whitted`: places on a way where it is asked");
+    p.optional("fade", medium.fade, "`whitted`: light that is lost by a power of the way");
+    p.optional("map_density", TextureMap{medium.density_texture},
+               "`whitted`: a pattern that multiplies them from place to place");
     p.optional("grid", ByHand{"file", "file"}, "densities that multiply them from place to place");
     p.optional("grid_name", grid_name, "which grid of an OpenVDB file");
     p.optional("noise", noise, "such densities, computed");
     p.field("bounds", bounds, "the box that the densities fill");
     p.optional("transform", transform, "of that box");
+    for (const char* key : {"grid", "noise"})
+      p.not_both("map_density", key, "a medium has either a 'map_density' or a 'grid' or 'noise'", key);
     p.not_both("grid", "noise", "a medium has either a 'grid' or 'noise'", "noise");
   }
 };
@@ -89,13 +100,17 @@ void finish_grid(SceneLoad& load, const Fields& fields, MediumKeys& keys) {
   const bool is_vdb = file && is_vdb_file(path);
   if (const YamlNode* const name = fields["grid_name"]; name && !is_vdb)
     throw Error(name->where(), "only a 'grid' that is an OpenVDB file (.vdb) has names");
-  if (!file && !fields["noise"]) {
-    if (const YamlNode* place = fields["bounds"] ? fields["bounds"] : transform)
-      throw Error(place->where(), "only a medium with a 'grid' or 'noise' has a place");
-    return;
-  }
   Medium& medium = keys.medium;
-  if (is_vdb) {
+  if (const YamlNode* const map = fields["map_density"]) {
+    if (!load.scene.textures[medium.density_texture].pattern)
+      throw Error(map->where(), "expected a pattern, which has a value at each place in space");
+    if (const YamlNode* const bounds = fields["bounds"])
+      throw Error(bounds->where(), "a pattern has no bounds; only a medium with a 'grid' or 'noise' has");
+  } else if (!file && !fields["noise"]) {
+    if (const YamlNode* place = fields["bounds"] ? fields["bounds"] : transform)
+      throw Error(place->where(), "only a medium with a 'grid', 'noise' or 'map_density' has a place");
+    return;
+  } else if (is_vdb) {
     read_vdb_grid(load, fields, path, keys);
   } else {
     medium.grid = file ? read_density_file(path) : density_of(keys.noise);

@@ -25,6 +25,7 @@ struct Surroundings {
   std::uint8_t visible_to = kAllRays;
   std::uint32_t light_list = kNoId;
   bool shadow_catcher = false;
+  bool hollow = false;
 };
 
 std::string visible_to_schema(Schema& schema) {
@@ -46,6 +47,7 @@ constexpr SchemaRow kObjectKeys[] = {
     {"name", "for mattes and lights; no two objects have the same", [](Schema&) { return Schema::text(); }},
     {"visible_to", "the rays that meet it; all if left out", visible_to_schema},
     {"shadow_catcher", "the camera sees only the shadows on it", [](Schema&) { return Schema::boolean(); }},
+    {"hollow", "fog is in the solid, too", [](Schema&) { return Schema::boolean(); }},
     {"lights_only", "of what glows: the objects that it lights", light_list_schema},
     {"lights_except", "of what glows: the objects that it does not light", light_list_schema}};
 
@@ -149,7 +151,8 @@ class ObjectReader {
                        outer.motion,
                        outer.visible_to,
                        is_instance ? kNoId : outer.light_list,
-                       outer.shadow_catcher};
+                       outer.shadow_catcher,
+                       outer.hollow};
     if (const YamlNode* material = fields["material"])
       attempt(*material, [&] { inner.material = read_material(load_, *material); });
     if (const YamlNode* transform = fields["transform"])
@@ -196,6 +199,12 @@ class ObjectReader {
           throw Error(node->where(), "a combination is a shadow catcher as a whole; expected the key there");
         inner.shadow_catcher |= load_.values.boolean(*node);
       });
+    if (const YamlNode* node = fields["hollow"])
+      attempt(*node, [&] {
+        if (is_operand_)
+          throw Error(node->where(), "a combination is hollow as a whole; expected the key there");
+        inner.hollow = load_.values.boolean(*node);
+      });
     const auto read_list = [&](const YamlNode* node, bool lights_others) {
       if (node == nullptr) return;
       attempt(*node, [&] {
@@ -223,6 +232,7 @@ class ObjectReader {
     object.name = inner.name;
     object.material = inner.material, object.visible_to = inner.visible_to;
     object.light_list = inner.light_list, object.shadow_catcher = inner.shadow_catcher;
+    object.hollow = inner.hollow;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
     for (const MeshShape& each : strokes) {

@@ -12,6 +12,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
+#include "io/volume/density_file.h"
 #include "io/yaml/utf8.h"
 
 namespace oktett {
@@ -304,6 +305,11 @@ struct PatternKeys {
 };
 
 }  // namespace
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, VoxelFile& file) {
+  file.grid = read_named_file(load, node, read_density_file);
+}
+std::string schema_of(Schema&, const Range&, const VoxelFile&) { return Schema::file(); }
 
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, PatternColor& color) {
   read_color(load, node, color);

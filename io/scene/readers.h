@@ -86,6 +86,8 @@ std::string schema_of(Schema& schema, const Range& range, const Camera::Angles& 
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings& caustics);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
 
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, VoxelFile& file);
+std::string schema_of(Schema& schema, const Range& range, const VoxelFile& file);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, TextureIndex& texture);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, PatternColor& color);
 std::string schema_of(Schema& schema, const Range& range, const TextureIndex& texture);
@@ -131,6 +133,11 @@ inline constexpr float kMostCoefficient = 1e9f;
 /// Adds the named media in the map `media` to the scene.
 void define_media(SceneLoad& load, const YamlNode& media);
 std::string media_schema(Schema& schema);
+/// Adds the fogs in the list `fog` to the scene.
+void read_fogs(SceneLoad& load, const YamlNode& fog);
+std::string fogs_schema(Schema& schema);
+/// Adds a warning if the scene is path traced and has fog, which it does not show then.
+void warn_of_fog(Scene& scene);
 /// Sets what fills the space around the scene, by the name of a medium.
 void read_outer_medium(SceneLoad& load, const YamlNode& node);
 std::string medium_schema(Schema& schema);

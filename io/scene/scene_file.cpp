@@ -170,6 +170,7 @@ struct SceneKeys {
     p.optional("media", Section{define_media, media_schema, true}, "media by name");
     p.optional("medium", Section{read_outer_medium, medium_schema},
                "name of the medium outside of all solids");
+    p.optional("fog", Section{read_fogs, fogs_schema}, "`whitted`: fog outside of solids");
     p.optional("materials", Section{define_materials, materials_schema, true}, "materials by name");
     p.optional("lights", Section{read_lights, lights_schema}, "two by the camera if left out");
     p.optional("define", Section{define_prototypes, prototypes_schema, true}, "prototypes by name");
@@ -328,6 +329,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   if (load.integrator) load.scene.integrator.kind = *load.integrator;
   move_near(load.scene);
   warn_of_energy(load.scene);
+  warn_of_fog(load.scene);
   warn_of_attributes(load.scene);
   warn_of_insides(load.scene);
   if (is_pov_file(path)) return;

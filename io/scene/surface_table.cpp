@@ -38,6 +38,7 @@ std::string allowed(const Range&, const UvFunction&) { return "[expression](#val
 std::string allowed(const Range&, const SolidBox&) { return "`{min, max}`, two points"; }
 std::string allowed(const Range&, const ClipBox& box) { return '`' + written(box) + '`'; }
 std::string allowed(const Range&, const TextureIndex&) { return "[texture](#textures)"; }
+std::string allowed(const Range&, const VoxelFile&) { return "file of [densities](#media)"; }
 std::string allowed(const Range&, const PatternColor&) { return "color, number or [texture](#textures)"; }
 std::string allowed(const Range&, const ByHand& value) { return value.type; }
 template <class T>

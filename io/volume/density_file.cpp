@@ -113,10 +113,46 @@ class DensityReader {
   std::size_t count_ = 0;
 };
 
+/// The grid of a DF3 file.
+std::shared_ptr<const DensityGrid> read_df3(const std::string& path, std::string_view bytes) {
+  const auto fail = [&](const std::string& message) { throw Error(Location{path}, message); };
+  const auto number = [&](std::size_t at, std::size_t size) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  constexpr std::size_t kHeader = 6;
+  if (bytes.size() < kHeader) fail("expected three sides of two bytes each");
+  std::uint32_t side[3];
+  std::size_t count = 1, stored = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    side[k] = number(2 * k, 2);
+    if (side[k] < 1 || side[k] >= kMostDensitySide)
+      fail(fmt::format("expected sides from 1 to {}, found {}", kMostDensitySide - 1, side[k]));
+    count *= side[k], stored *= std::size_t{side[k]} + 1;
+  }
+  if (stored > kMostDensities) fail(fmt::format("a grid has at most {} values", kMostDensities));
+  const std::size_t size = (bytes.size() - kHeader) / count;
+  if ((size != 1 && size != 2 && size != 4) || size * count != bytes.size() - kHeader)
+    fail(fmt::format("expected {} values of 1, 2 or 4 bytes each, found {} bytes", count,
+                     bytes.size() - kHeader));
+  const double most = std::ldexp(1.0, static_cast<int>(8 * size)) - 1;
+  Column<float> values(stored);
+  std::size_t next = 0;
+  for (std::uint32_t z = 0; z <= side[2]; ++z)
+    for (std::uint32_t y = 0; y <= side[1]; ++y)
+      for (std::uint32_t x = 0; x <= side[0]; ++x) {
+        const std::size_t from = (std::size_t{z % side[2]} * side[1] + y % side[1]) * side[0] + x % side[0];
+        values[next++] = static_cast<float>(number(kHeader + from * size, size) / most);
+      }
+  return std::make_shared<const DensityGrid>(side[0] + 1, side[1] + 1, side[2] + 1, std::move(values));
+}
+
 }  // namespace
 
 std::shared_ptr<const DensityGrid> read_density_file(const std::string& path) {
   const MappedFile file(path);
+  if (lower_case_extension(path) == ".df3") return read_df3(path, file.text());
   return DensityReader(path, without_byte_order_mark(file.text())).read();
 }
 

@@ -91,7 +91,7 @@ template <class A>
 void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ArrivingRays& rays,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
-  c.varying = c.sending = 0;
+  c.varying = c.sending = c.unsplit = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const PickedLanes<F> ray(c.ray + i);
     const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]),
@@ -360,13 +360,18 @@ void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, Bounce
       }
       const F reflectance =
           select(exists, to_float(fresnel_lanes(to_double(-dot_lanes(d, ns)), to_double(eta))), one);
-      const F more = transparency * reflectance;
+      F more = transparency * reflectance, passes = transparency * (one - reflectance);
+      if (const auto unsplit = static_cast<unsigned>(c.unsplit >> i) & clear; unsplit != 0) {
+        const auto whole = F::M::from_bits(unsplit);
+        const auto total = whole & ~exists;
+        more = select(whole & exists, zero, more), passes = select(whole & exists, transparency, passes);
+        mirror = select_lanes(total, Vec3<F>{zero, zero, zero}, mirror), more = select(total, one, more);
+      }
       mirror = {mirror.x + more, mirror.y + more, mirror.z + more};
       Vec3<F> filter = load_lanes<F>(c.color, i);
       if (const auto varying = static_cast<unsigned>(c.varying >> i) & real; varying != 0)
         filter = select_lanes(F::M::from_bits(varying), load_lanes<F>(c.filter, i), filter);
-      put_bounces(s, c, i, clear & bits(exists), direction,
-                  scale_lanes(filter, transparency * (one - reflectance)), refracted);
+      put_bounces(s, c, i, clear & bits(exists), direction, scale_lanes(filter, passes), refracted);
     }
     put_bounces(s, c, i, real, reflect_above_lanes(d, ns, ng), mirror, mirrored);
   }

@@ -11,6 +11,7 @@
 #include "core/soa.h"
 #include "core/vec3.h"
 #include "render/dielectric_stack.h"
+#include "render/insides.h"
 #include "render/light/light_sample.h"
 #include "render/scene.h"
 #include "render/straight_light.h"
@@ -52,6 +53,7 @@ struct RayQueue {
   Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
   /// What other rays are for. Set only if RenderContext::bounces_differ.
   Column<RayKind> kind;
+  Column<Insides> insides;  ///< the solids around the ray. Set only if RenderContext::tracks_insides.
 
   std::size_t size() const { return sample.size(); }
   bool empty() const { return sample.empty(); }
@@ -61,6 +63,7 @@ struct RayQueue {
     rays.resize_uninitialized(n);
     sample.resize_uninitialized(n), throughput.resize_uninitialized(n), distance.resize_uninitialized(n);
     bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n), kind.resize_uninitialized(n);
+    insides.resize_uninitialized(n);
   }
 
   /// Adds the rays of another queue.
@@ -76,7 +79,7 @@ struct RayQueue {
     }
     copy(other.rays.tmin, rays.tmin), copy(other.rays.tmax, rays.tmax), copy(other.sample, sample);
     copy(other.distance, distance), copy(other.bounces, bounces), copy(other.from_camera, from_camera);
-    copy(other.kind, kind);
+    copy(other.kind, kind), copy(other.insides, insides);
   }
 
   /// One entry of the columns.
@@ -88,15 +91,17 @@ struct RayQueue {
     std::uint8_t bounces = 0;
     bool from_camera = false;
     RayKind kind = RayKind::camera;
+    Insides insides{};
   };
   Entry operator[](std::size_t i) const {
-    return {rays[i], sample[i], throughput[i], distance[i], bounces[i], from_camera[i] != 0, kind[i]};
+    return {rays[i],    sample[i],           throughput[i], distance[i],
+            bounces[i], from_camera[i] != 0, kind[i],       insides[i]};
   }
   void push_back(const Entry& e) {
     rays.push_back(e.ray);
     sample.push_back(e.sample), throughput.push_back(e.throughput), distance.push_back(e.distance);
     bounces.push_back(e.bounces), from_camera.push_back(e.from_camera ? 1 : 0);
-    kind.push_back(e.kind);
+    kind.push_back(e.kind), insides.push_back(e.insides);
   }
 };
 

@@ -10,6 +10,7 @@
 #include "core/math.h"
 #include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
+#include "render/transport/medium_march.h"
 #include "render/transport/medium_paths.h"
 #include "render/transport/render_code.h"
 
@@ -44,9 +45,10 @@ static void look_at_surfaces(const RenderContext& context, ShadowRule rule, Pass
 /// What Whitted's model leaves of light that has come through a solid to the surface where a ray leaves it.
 static Color passing_interior(const RenderContext& context, const Ray& ray, const Hit& hit,
                               const SurfaceInteraction& s) {
-  const Vec3d extinction = context.interiors[material_index(*context.world, s.user, s.material_slot)];
-  const Vec3d depth = extinction * (static_cast<double>(hit.t) * length(Vec3d(ray.direction)));
-  return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
+  const Vec3d direction(ray.direction);
+  const double size = length(direction);
+  return passing_interior(context, material_index(*context.world, s.user, s.material_slot),
+                          {Vec3d(ray.origin), direction / size, static_cast<double>(hit.t) * size});
 }
 
 /// Takes the light of the rays of `p.kept` through the surfaces that they have met. Sets `p.behind` to the
@@ -65,7 +67,7 @@ static void go_behind_surfaces(const RenderContext& context, const RaySpan& rays
       const SurfaceInteraction s = surfaces[k - first];
       const StraightPassage passage = straight_passage(context, rays[met], p.hits[met], s, rule);
       StraightLight& light = p.passed[number];
-      if (!passage.front && !context.interiors.empty())
+      if (!passage.front && context.tracks_insides)
         light.lose(passing_interior(context, rays[met], p.hits[met], s));
       light.pass(passage, material_index(*context.world, s.user, s.material_slot));
       if (is_black(light.light)) continue;

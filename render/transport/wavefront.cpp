@@ -15,6 +15,7 @@
 #include "render/transport/path.h"
 #include "render/transport/render_code.h"
 #include "render/transport/shadow.h"
+#include "render/transport/veils.h"
 
 namespace oktett {
 
@@ -442,7 +443,7 @@ void catch_rays(const RenderContext& context, Wavefront& wavefront) {
 }
 
 /// Fills the columns whose value is the same for all camera rays.
-void fill_camera_rays(Wavefront& wavefront) {
+void fill_camera_rays(const RenderContext& context, Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
   const RayQueue::Entry like;
   RayQueue& rays = wavefront.rays;
@@ -450,6 +451,7 @@ void fill_camera_rays(Wavefront& wavefront) {
   std::fill_n(rays.distance.data(), count, like.distance);
   std::fill_n(rays.bounces.data(), count, like.bounces);
   std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
+  if (context.tracks_insides) std::fill_n(rays.insides.data(), count, context.camera_insides);
 }
 
 /// Takes away the camera rays of film points at which nothing is seen; their samples stay black.
@@ -510,7 +512,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       if (is_curved(context.camera.projection)) drop_left_out(wavefront);
       if (context.catches) add_caught_samples(wavefront.samples);
       fill_samples(context, wavefront.samples);
-      fill_camera_rays(wavefront);
+      fill_camera_rays(context, wavefront);
       start_layers(context, wavefront);
       wavefront.counts.camera_hits += static_cast<std::uint64_t>(
           std::ranges::count_if(wavefront.hits.item, [](std::uint32_t item) { return item != kNoId; }));
@@ -520,6 +522,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     if (context.tracks_dielectrics) pass_media(context, wavefront);
     if (context.catches) catch_rays(context, wavefront);
     start_level(context, wavefront);
+    if (context.tracks_insides) veil_misses(context, wavefront), flush_shadows(context, wavefront);
     if (context.shadows_decide) add_met_lights(context, wavefront);
     cover_background(context, wavefront);
     if (context.tracks_dielectrics) shade_media(context, wavefront);
@@ -578,6 +581,7 @@ void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const V
   if (bounce == Bounce::reflected) entry.kind = RayKind::glossy;
   if (bounce == Bounce::refracted) entry.kind = RayKind::transmission;
   if (straight && wavefront.level > 0) entry.kind = wavefront.rays.kind[ray];
+  entry.insides = wavefront.rays.insides[ray];
   queue.push_back(entry);
   ++(bounce == Bounce::reflected ? wavefront.counts.reflected : wavefront.counts.refracted);
 }

@@ -8,7 +8,9 @@
 #include "render/light/light_share.h"
 #include "render/shading_lanes.h"
 #include "render/transport/integrators.h"
+#include "render/transport/light_rays.h"
 #include "render/transport/render_code.h"
+#include "render/transport/veils.h"
 
 namespace oktett {
 namespace {
@@ -17,14 +19,6 @@ namespace {
 constexpr std::uint16_t kMostRaysPerLevel = 256;
 /// The limit cannot be met below this bounce: a hit sends at most three rays, and 3^5 = 243.
 constexpr unsigned kFirstLimitedLevel = 5;
-
-/// The part of the light that passes the interior of the solid that a ray leaves at `p` (Beer's law).
-Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
-  const auto material = static_cast<std::size_t>(p.material - context.world->materials.data());
-  if (p.front || context.interiors.empty()) return {1, 1, 1};
-  const Vec3d depth = context.interiors[material] * static_cast<double>(p.t);
-  return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
-}
 
 /// Adds the light of a hit that needs no emitter. `throughput` includes the opacity of the surface.
 void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
@@ -43,12 +37,22 @@ void name_hits(const RenderContext& context, const std::uint32_t* which, const I
     c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
 }
 
+/// The colour of light that passes.
+Color passing_color(const ShadingPoint& p) {
+  const Color filter = p.filter.value_or(p.color);
+  if (!p.material->conserve_energy || p.material->principled) return filter;
+  Color left;
+  for (int k = 0; k < 3; ++k)
+    left[k] = filter[k] * std::max(0.0f, 1 - p.specular_color[k] * p.values.reflection);
+  return left;
+}
+
 /// Sets what varies over a surface, for hit `k`.
 void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, ShadingColumns& c) {
   InteractionBlock::put(c.throughput, k, throughput);
   InteractionBlock::put(c.color, k, p.color);
   InteractionBlock::put(c.specular_color, k, p.specular_color);
-  InteractionBlock::put(c.filter, k, p.filter.value_or(p.color));
+  InteractionBlock::put(c.filter, k, passing_color(p));
   InteractionBlock::put(c.ng, k, p.ng);
   InteractionBlock::put(c.ns, k, p.ns);
   c.diffuse[k] = p.values.diffuse;
@@ -58,6 +62,7 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   c.reflection[k] = p.values.reflection;
   c.transparency[k] = p.values.transparency;
   c.eta[k] = p.front ? p.ior : 1 / p.ior;
+  if (!p.material->fresnel && !p.material->principled) c.unsplit |= std::uint64_t{1} << k;
   // A texture may make a mirror of what is none elsewhere.
   if (p.values.reflection != 0 || p.values.transparency != 0) c.sending |= std::uint64_t{1} << k;
 }
@@ -74,8 +79,6 @@ OKTETT_NOINLINE Color finish_varying(const RenderContext& context, Wavefront& wa
     record_first_hit(context, wavefront, i, shown_surface(p));
     cover(context, wavefront, i, p.opacity);
   }
-  const Color left = passing_interior(context, p);
-  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
   const Color arriving = wavefront.rays.throughput[i], throughput = arriving * p.opacity;
   add_unlit(context, wavefront, i, p, throughput);
   put_varying(p, throughput, k, c);
@@ -114,8 +117,8 @@ void limit_bounces(const RenderContext& context, Wavefront& wavefront, const Sha
   }
 }
 
-void queue_bounces(const RenderContext& context, Wavefront& wavefront, const ShadingColumns& c,
-                   const BounceColumns& sent, RayKind kind, RayQueue& queue) {
+void queue_bounces(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                   const ShadingColumns& c, const BounceColumns& sent, RayKind kind, RayQueue& queue) {
   if (sent.sent == 0) return;
   const std::size_t first = queue.size();
   OnwardColumns to = end_of(queue, static_cast<std::size_t>(std::popcount(sent.sent)));
@@ -123,6 +126,14 @@ void queue_bounces(const RenderContext& context, Wavefront& wavefront, const Sha
   queue.resize_uninitialized(to.size);
   finish_rays(queue, first);
   if (context.bounces_differ) std::fill_n(queue.kind.data() + first, queue.size() - first, kind);
+  if (!context.tracks_insides) return;
+  std::size_t next = first;
+  for (std::uint64_t left = sent.sent; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    queue.insides[next++] = kind == RayKind::transmission
+                                ? insides_behind(context, wavefront, c.ray[k], found, k)
+                                : wavefront.rays.insides[c.ray[k]];
+  }
 }
 
 /// Queues the rays that leave holes, mirrors and glass one by one, as those of a sample follow the order of
@@ -136,6 +147,8 @@ void queue_in_order(const RenderContext& context, Wavefront& wavefront, const In
       const Vec3f direction = InteractionBlock::get(c.direction, k);
       push_bounce(wavefront, wavefront.next, i, offset_origin(found[k], direction), direction, straight[k],
                   Bounce::straight);
+      if (context.tracks_insides)
+        wavefront.next.insides.back() = insides_behind(context, wavefront, i, found, k);
     }
     if (wavefront.rays.bounces[i] >= context.settings.depth) continue;
     const auto push = [&](const BounceColumns& sent, RayQueue& queue, Bounce bounce) {
@@ -143,6 +156,8 @@ void queue_in_order(const RenderContext& context, Wavefront& wavefront, const In
       push_bounce(wavefront, queue, i, InteractionBlock::get(sent.origin, k),
                   InteractionBlock::get(sent.direction, k), InteractionBlock::get(sent.throughput, k),
                   bounce);
+      if (context.tracks_insides && bounce == Bounce::refracted)
+        queue.insides.back() = insides_behind(context, wavefront, i, found, k);
     };
     push(mirrored, wavefront.next, Bounce::reflected);
     push(refracted, wavefront.refracted, Bounce::refracted);
@@ -159,8 +174,8 @@ void push_bounces(const RenderContext& context, Wavefront& wavefront, const Inte
   if (straight != nullptr) return queue_in_order(context, wavefront, found, c, straight, mirrored, refracted);
   if (!sends) return;
   limit_bounces(context, wavefront, c, mirrored, refracted);
-  queue_bounces(context, wavefront, c, mirrored, RayKind::glossy, wavefront.next);
-  queue_bounces(context, wavefront, c, refracted, RayKind::transmission, wavefront.refracted);
+  queue_bounces(context, wavefront, found, c, mirrored, RayKind::glossy, wavefront.next);
+  queue_bounces(context, wavefront, found, c, refracted, RayKind::transmission, wavefront.refracted);
   wavefront.counts.reflected += static_cast<unsigned>(std::popcount(mirrored.sent));
   wavefront.counts.refracted += static_cast<unsigned>(std::popcount(refracted.sent));
 }
@@ -176,31 +191,6 @@ void keep_listed(const RenderContext& context, const Wavefront& wavefront, const
     queue.set(left++, queue.rays[i], owner, queue.light[i]);
   }
   queue.resize_uninitialized(left);
-}
-
-/// Takes from the light of the rays from `first` on what its distance and its angle to the axis of the light
-/// cost.
-void fade_light(const LightSource& light, std::size_t first, ShadowQueue& queue) {
-  for (std::size_t i = first; i < queue.size(); ++i) {
-    const Vec3d way(queue.rays[i].direction);
-    const double distance = length(way);
-    const float left = faded_share(light.fade, distance) *
-                       tight_share(-dot(way, Vec3d(light.axis)) / distance, light.tightness);
-    queue.light.set(i, queue.light[i] * left);
-  }
-}
-
-/// The same of a directional light that has a place. Its shadow rays end there.
-void end_light(const LightSource& light, std::size_t first, ShadowQueue& queue) {
-  for (std::size_t i = first; i < queue.size(); ++i) {
-    const Vec3d towards(light.place), way = light.from - Vec3d(queue.rays[i].origin);
-    const double distance = dot(way, towards);
-    float left = faded_share(light.fade, std::max(distance, 0.0));
-    if (light.beam.ends())
-      left *= distance > 0 ? beam_share(light.beam, length(way - towards * distance)) : 0;
-    queue.light.set(i, queue.light[i] * left);
-    if (light.shadows) queue.rays.tmax[i] = static_cast<float>(std::max(distance, 0.0));
-  }
 }
 
 /// Hits without highlights.
@@ -224,13 +214,7 @@ void push_shadow_rays(const RenderContext& context, const Wavefront& wavefront, 
     keep_listed(context, wavefront, found, light.list, c, first, queue);
     out.size = queue.size();
   }
-  if (!light.directional && (light.fade.fades() || light.tightness > 0)) fade_light(light, first, queue);
-  const Ray like;
-  std::fill_n(queue.rays.tmin.data() + first, out.size - first, like.tmin);
-  // A ray of no length meets nothing.
-  const float tmax = !light.shadows ? 0 : light.directional ? like.tmax : kBeforeLight;
-  std::fill_n(queue.rays.tmax.data() + first, out.size - first, tmax);
-  if (light.from_place) end_light(light, first, queue);
+  finish_light_rays(light, first, queue);
 }
 
 /// Which points of the area lights the hit of a ray asks.
@@ -242,6 +226,7 @@ std::uint32_t pattern_of(const RenderContext& context, const Wavefront& wavefron
 
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found) {
+  if (context.tracks_insides) veil_hits(context, wavefront, which, count);
   ShadingColumns c;
   RaisedPoints raised = raised_points(context, wavefront, which, found);
   c.count = count, c.raised = &raised;

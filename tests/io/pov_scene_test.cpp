@@ -246,8 +246,7 @@ TEST(PovScene, LooksBecomeMaterials) {
             "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, specular: 1, phong: 25}}");
   EXPECT_EQ(material("pigment { rgbf <1, 0.5, 1, 0.75> } interior { ior 1.5 }"),
             "{material: {color: [1, 0.5, 1], ambient: 0.025, diffuse: 0.15, transparency: 0.75, filter: [1, "
-            "0.5, 1], "
-            "ior: 1.5}}");
+            "0.5, 1], fresnel: false, ior: 1.5}}");
   EXPECT_EQ(
       material("pigment { checker rgb 0, rgb 1 scale 2 }"),
       "{material: {color: {checker: {colors: [[0, 0, 0], [1, 1, 1]], transform: {scale: 2}}}, ambient: 0.1, "

@@ -185,7 +185,8 @@ TEST(SceneMedia, ReportsBadGrids) {
 
 TEST(SceneMedia, ReportsBadPlacesAndNoise) {
   expect_error("media: {a: {grid: none.grid}}\n", "none.grid");
-  expect_error("media: {a: {bounds: {}}}\n", "only a medium with a 'grid' or 'noise' has a place");
+  expect_error("media: {a: {bounds: {}}}\n",
+               "only a medium with a 'grid', 'noise' or 'map_density' has a place");
   for (const std::string flat : {"[0, 1, 1]", "[1, 0, 1]", "[1, 1, 0]"})
     expect_error("media: {a: {noise: {}, bounds: {min: [0, 0, 0], max: " + flat + "}}}\n",
                  "'min' below 'max'");

@@ -35,11 +35,13 @@ class ScenePattern : public testing::Test {
 
 TEST_F(ScenePattern, EachKindIsRead) {
   std::size_t kinds = 0;
+  files.dir.write("a.grid", "oktett density grid 1\nsize 2 2 2\nvalues text\n0 0 0 0 1 1 1 1\n");
   visit_patterns([&]<class P>(const P& usual) {
     std::string keys;
     if constexpr (std::is_same_v<P, FunctionPattern>) keys = "f: x";
     if constexpr (std::is_same_v<P, TexturePattern>) keys = "of: {noise: }";
     if constexpr (std::is_same_v<P, ProjectedPattern>) keys = "of: {file: a.png}";
+    if constexpr (std::is_same_v<P, VoxelPattern>) keys = "file: a.grid";
     if constexpr (std::is_same_v<P, OverPattern>) keys = "color: 0.25, filter: [0, 0.5, 1], under: {noise: }";
     const PatternTexture read = pattern(std::string(P::kShapeInfo.key) + ": {" + keys + "}");
     EXPECT_TRUE(std::holds_alternative<P>(read.pattern)) << P::kShapeInfo.key;

@@ -27,9 +27,10 @@ struct Context {
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes;
 
   /// The sections of the tree.
-  Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr;
+  Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr, media = nullptr;
   std::string mesh_prefix;
-  double gamma = 1;  ///< in which light is computed
+  double gamma = 1;      ///< in which light is computed
+  bool has_fog = false;  ///< or media: it matters which solids are hollow
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
   /// declaration.
   std::map<const Block*, std::array<Vec3d, 2>> extents;

@@ -58,16 +58,17 @@ class FinishReader {
     else if (word == "metallic")
       f.metallic = a.is_numbers() ? a.number("a number") : 1;
     else if (word == "reflection")
-      f.reflection = f.reflection_max = a.vector("a colour"), f.varies = false;
+      f.reflection = f.reflection_max = a.vector("a colour"), f.varies = f.fresnel = false;
     else if (word == "ior")
       f.ior = a.number("a number");
     else if (word == "refraction" || word == "caustics" || word == "fade_power" || word == "fade_distance" ||
              word == "use_alpha") {
       if (a.is_numbers()) a.take();
     } else if (word == "conserve_energy")
-      a.flag();
+      f.conserves = a.flag();
     else if (word == "brilliance" || word == "crand" || word == "reflection_exponent") {
-      if (a.number("a number") != (word == "crand" ? 0 : 1)) tell(word, where);
+      if (a.number("a number") != (word == "crand" ? 0 : 1))
+        tell(word == "reflection_exponent" ? "exponent of reflection" : word, where);
     } else if (is_filler(word)) {
     } else {
       tell(word, where);
@@ -82,6 +83,7 @@ class FinishReader {
   void read_reflection(const Block& block, Finish& f) {
     Arguments a(context_, block);
     std::vector<Vec3d> colors;
+    f.fresnel = false, f.falloff = 1, f.reflection_metallic = 0;
     while (!a.at_end()) {
       const Place where = a.where();
       if (a.is_numbers()) {
@@ -90,16 +92,19 @@ class FinishReader {
         f.fresnel = a.flag();
       } else if (a.take_word("metallic")) {
         f.reflection_metallic = a.is_numbers() ? a.number("a number") : 1;
-      } else if (a.take_word("falloff") || a.take_word("exponent")) {
-        a.number("a number");
-        tell("falloff of reflection", where);
+      } else if (a.take_word("falloff")) {
+        f.falloff = a.number("a number");
+      } else if (a.take_word("exponent")) {
+        if (a.number("a number") != 1) tell("exponent of reflection", where);
       } else {
         a.take();
       }
     }
     if (colors.empty()) return;
     f.reflection = colors[0], f.reflection_max = colors.back();
-    f.varies = colors.size() > 1;
+    // By Fresnel's equations a single colour is that at grazing angles.
+    if (f.fresnel && colors.size() == 1) f.reflection = {0, 0, 0};
+    f.varies = !(f.reflection == f.reflection_max);
   }
 
   Context& context_;

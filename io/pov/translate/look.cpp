@@ -14,33 +14,6 @@
 namespace oktett::pov {
 namespace {
 
-struct Interior {
-  double ior = 1;
-};
-
-void read_interior(Context& context, const Block& block, Interior& interior) {
-  Arguments a(context, block);
-  while (!a.at_end()) {
-    const Place where = a.where();
-    if (const Block* const inner = a.peek_block()) {
-      if (inner->keyword == "interior")
-        read_interior(context, *inner, interior);
-      else
-        context.tell(fmt::format("interior {}", inner->keyword), inner->where,
-                     fmt::format("'{}' in an interior has no meaning here, and is left out", inner->keyword));
-      a.take();
-    } else if (a.take_word("ior")) {
-      interior.ior = a.number("a number");
-    } else {
-      const std::string word(a.peek_word());
-      a.take();
-      const bool changes = a.is_numbers() && a.vector("a number").x != 0;
-      if (changes && word != "caustics")
-        context.tell("interior " + word, where, fmt::format("'{}' of an interior has no meaning here", word));
-    }
-  }
-}
-
 bool is_grey(const Vec3d& c) { return c.x == c.y && c.y == c.z; }
 
 double left_of(const PovColor& c) { return 1 - std::clamp(c.filter + c.transmit, 0.0, 1.0); }
@@ -66,7 +39,8 @@ class MaterialWriter {
   MaterialWriter(Context& context, const Place& where)
       : context_(context), tree_(context.tree), where_(where) {}
 
-  Node write(const Look& look, const Interior& interior) {
+  /// `medium`: the name of what fills solids; empty: nothing does.
+  Node write(const Look& look, const Interior& interior, const std::string& medium) {
     const Node map = tree_.map(where_);
     const bool transparent = is_transparent(look);
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
@@ -76,16 +50,21 @@ class MaterialWriter {
       tree_.put(map, "emission", glow(look));
     tree_.put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }));
     put_highlight(map, look);
-    put_reflection(map, look, interior);
+    put_reflection(map, look);
+    double ior = interior.ior;
+    for_each_plain(look, [&](const Look& l) { ior = l.finish.ior.value_or(ior); });
+    if (!(ior > 0)) ior = 1;
     if (transparent) {
       if (is_solid_glass)
         put_solid_glass(map, look.pigment.solid);
       else
         tree_.put(map, "transparency", tree_.number(where_, 1)), tree_.put(map, "filter", filter(look));
-      double ior = interior.ior;
-      for_each_plain(look, [&](const Look& l) { ior = l.finish.ior.value_or(ior); });
-      tree_.put(map, "ior", tree_.number(where_, ior > 0 ? ior : 1));
+      // Light is not split: what is mirrored is stated.
+      if (ior != 1) tree_.put(map, "fresnel", tree_.flag(where_, false));
+      if (!medium.empty()) tree_.put(map, "interior", tree_.text(where_, medium));
     }
+    if (transparent || any(look, [](const Finish& f) { return f.varies && f.fresnel; }))
+      tree_.put(map, "ior", tree_.number(where_, ior));
     if (const Node bump = heights(look)) tree_.put(map, "map_bump", bump);
     return map;
   }
@@ -266,44 +245,55 @@ class MaterialWriter {
                 }));
   }
 
-  Vec3d reflection_of(const Look& look, const Interior& interior) {
-    const Finish& f = look.finish;
-    if (!f.varies || f.reflection == f.reflection_max) return f.reflection;
-    // Clear glass reflects by Fresnel's equations here whatever is asked for.
-    if (left_of(mean_of(look.pigment)) < 0.5 && interior.ior != 1) return f.reflection;
-    context_.tell("varying reflection", where_,
-                  "a reflection that grows with the angle is the same at all angles here: 2/3 of the "
-                  "least and 1/3 of the greatest");
-    return f.reflection * (2.0 / 3) + f.reflection_max * (1.0 / 3);
+  static bool mirrors(const Finish& f) {
+    return max_component(f.reflection) > 0 || max_component(f.reflection_max) > 0;
   }
 
-  void put_reflection(Node map, const Look& look, const Interior& interior) {
-    bool some = false;
-    for_each_plain(look,
-                   [&](const Look& l) { some = some || max_component(reflection_of(l, interior)) > 0; });
-    if (!some) return;
-    put_unless_zero(map, "reflection", number(look, [&](const Look& l) {
-                      return std::min(max_component(reflection_of(l, interior)), 1.0);
-                    }));
-    const auto hue = [&](const Look& l, const Vec3d& rgb) {
-      const Finish& f = l.finish;
-      const Vec3d r = reflection_of(l, interior);
-      const double weight = max_component(r);
-      const Vec3d own = weight > 0 ? r / weight : Vec3d{1, 1, 1};
-      return own * tint(std::max(f.reflection_metallic, f.metallic * (f.phong + f.specular > 0)), rgb);
+  static double weight_of(const Vec3d& reflection) { return std::clamp(max_component(reflection), 0.0, 1.0); }
+
+  /// The colour of what is mirrored, `rgb` being that of the pigment. One that changes with the angle is the
+  /// mean of both.
+  static Vec3d hue_of(const Finish& f, const Vec3d& rgb) {
+    const auto own = [](const Vec3d& reflection) {
+      const double weight = max_component(reflection);
+      return weight > 0 ? reflection / weight : Vec3d{1, 1, 1};
     };
-    bool colored = false, highlights = false;
-    for_each_plain(look, [&](const Look& l) {
-      colored = colored || !(hue(l, {0, 0.5, 1}) == Vec3d{1, 1, 1});
-      highlights = highlights || l.finish.phong > 0 || l.finish.specular > 0;
-    });
-    if (!colored) return;
+    Vec3d hue = own(f.reflection_max);
+    if (max_component(f.reflection) > 0) hue = (hue + own(f.reflection)) * 0.5;
+    return hue * tint(f.reflection_metallic, rgb);
+  }
+
+  void put_reflection(Node map, const Look& look) {
+    if (!any(look, mirrors)) return;
+    put_unless_zero(map, "reflection",
+                    number(look, [](const Look& l) { return weight_of(l.finish.reflection); }));
+    put_growth(map, look);
+    if (any(look, [](const Finish& f) { return f.conserves; }))
+      tree_.put(map, "conserve_energy", tree_.flag(where_, true));
+    const auto is_colored = [](const Finish& f) { return !(hue_of(f, {0, 0.5, 1}) == Vec3d{1, 1, 1}); };
+    if (!any(look, is_colored)) return;
     tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
                 return pigment_node(context_, where_, l.pigment,
-                                    {[&](const PovColor& c) { return hue(l, c.rgb); }});
+                                    {[&](const PovColor& c) { return hue_of(l.finish, c.rgb); }});
               }));
-    if (highlights)
+    if (any(look, [](const Finish& f) { return f.phong > 0 || f.specular > 0; }))
       context_.tell("coloured reflection", where_, "highlights have the colour of the reflection");
+  }
+
+  /// How reflection grows with the angle.
+  void put_growth(Node map, const Look& look) {
+    if (!any(look, [](const Finish& f) { return f.varies; })) return;
+    tree_.put(map, "reflection_grazing",
+              number(look, [](const Look& l) { return weight_of(l.finish.reflection_max); }));
+    Finish first;
+    bool found = false;
+    for_each_plain(look, [&](const Look& l) {
+      if (l.finish.varies && !found) first = l.finish, found = true;
+    });
+    if (first.fresnel)
+      tree_.put(map, "reflection_falloff", tree_.word(where_, "fresnel"));
+    else if (first.falloff != 1)
+      tree_.put(map, "reflection_falloff", tree_.number(where_, std::clamp(first.falloff, 1e-3, 1000.0)));
   }
 
   Context& context_;
@@ -374,13 +364,14 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
   for (const auto& block : dress.finishes) blocks.push_back(block.get());
   const auto key = std::tuple(blocks, static_cast<const Block*>(dress.interior.get()),
                               static_cast<const Block*>(default_texture.get()));
-  const bool is_placed = !(dress.to_texture == Affine{});
+  Interior interior;
+  if (dress.interior) read_interior(context_, *dress.interior, interior);
+  const bool is_placed = !(dress.to_texture == Affine{}) || interior.fills();
   if (!is_placed)
     if (const auto found = known_.find(key); found != known_.end()) return name_node(where, found->second);
   const Look look = look_of(dress, default_texture);
-  Interior interior;
-  if (dress.interior) read_interior(context_, *dress.interior, interior);
-  const Node node = MaterialWriter(context_, where).write(look, interior);
+  const std::string medium = dress.solid ? media_.name(interior, dress.interior_to_world, dress.hollow) : "";
+  const Node node = MaterialWriter(context_, where).write(look, interior, medium);
   const auto [entry, is_new] = names_.try_emplace(flow_text(*node), "");
   if (is_new) {
     std::string wanted = look.name;

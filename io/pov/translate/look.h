@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "io/pov/translate/media.h"
 #include "io/pov/translate/texture.h"
 
 namespace oktett::pov {
@@ -20,16 +21,22 @@ struct Dress {
   std::shared_ptr<const Block> interior;               ///< or null
   Affine to_texture;  ///< from the space of the object before its transforms to that of the textures
 
+  Affine interior_to_world;  ///< from the space of the interior
+  bool hollow = false;       ///< so that media show
+  bool solid = true;         ///< else nothing fills it
+
   bool has_texture() const { return !textures.empty() || !finishes.empty(); }
 };
 
 /// Makes materials, each once.
 class Wardrobe {
  public:
-  explicit Wardrobe(Context& context) : context_(context) {}
+  explicit Wardrobe(Context& context) : context_(context), media_(context) {}
 
   /// The name of the material of an object at `where`, as a node.
   Node material(const Dress& dress, const std::shared_ptr<const Block>& default_texture, const Place& where);
+  /// What fills the space outside of all solids.
+  std::string surrounding(const Interior& interior) { return media_.name(interior, {}, true); }
   /// One that is not seen, for faces that are cut open.
   Node invisible(const Place& where);
 
@@ -38,6 +45,7 @@ class Wardrobe {
   Node name_node(const Place& where, const std::string& name) { return context_.tree.text(where, name); }
 
   Context& context_;
+  MediaWriter media_;
   std::map<std::string, std::string> names_;  ///< by what the material says
   std::map<std::tuple<std::vector<const Block*>, const Block*, const Block*>, std::string> known_;
   std::set<std::string> taken_;

@@ -24,6 +24,8 @@ struct ObjectWriter::Modifiers {
   std::vector<Clip> clips;
   Dress own;
   bool no_shadow = false, no_image = false, no_reflection = false, inverse = false;
+  bool hollow = false;
+  Affine before_interior;  ///< transforms that stand before the interior
   bool changes_look() const { return own.has_texture() || own.interior != nullptr; }
   bool hides() const { return no_shadow || no_image || no_reflection; }
 };
@@ -76,15 +78,17 @@ bool ObjectWriter::is_dressed(const Block& block) {
   return any_child && all;
 }
 
-bool ObjectWriter::has_light(const Block& block) {
-  if (const auto known = lit_.find(&block); known != lit_.end()) return known->second;
-  const bool lit = std::ranges::any_of(block.elements, [this](const Element& e) {
+bool ObjectWriter::holds(std::map<const Block*, bool>& known, const Block& block, std::string_view keyword) {
+  if (const auto found = known.find(&block); found != known.end()) return found->second;
+  const bool has = std::ranges::any_of(block.elements, [&](const Element& e) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
-    return inner != nullptr && *inner != nullptr &&
-           ((*inner)->keyword == "light_source" || (is_object((*inner)->keyword) && has_light(**inner)));
+    if (inner == nullptr || *inner == nullptr) return false;
+    const std::string_view k = (*inner)->keyword;
+    const bool goes_on = is_object(k) || k == "interior" || k == "material";
+    return k == keyword || (goes_on && holds(known, **inner, keyword));
   });
-  if (!block.name.empty()) lit_[&block] = lit;
-  return lit;
+  if (!block.name.empty()) known[&block] = has;
+  return has;
 }
 
 void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
@@ -140,11 +144,13 @@ void ObjectWriter::add_light(const std::shared_ptr<const Block>& block, const Af
 ObjectWriter::Maybe ObjectWriter::build(const std::shared_ptr<const Block>& block, const Outer& outer) {
   const bool is_shared =
       !hidden_ && !block->name.empty() && uses_.contains(block.get()) && uses_.at(block.get()) > 1;
-  if (is_shared && !has_light(*block)) {
+  if (is_shared && !holds(lit_, *block, "light_source")) {
     const bool keeps_look =
         asked_ || is_dressed(*block) || (!outer.dress.has_texture() && outer.dress.interior == nullptr);
     const int least = outer.operand ? kOperandWeight : kInstanceWeight;
-    if (keeps_look && weight(*block) >= least) return build_instance(block, outer);
+    // The patterns of media have a place in the world.
+    if (keeps_look && weight(*block) >= least && !holds(media_in_, *block, "media"))
+      return build_instance(block, outer);
   }
   return build_object(*block, outer);
 }
@@ -215,7 +221,7 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       } else if (k == "finish" || k == "normal") {
         m.own.finishes.push_back(inner), m.own.to_texture = m.moves.all;
       } else if (k == "interior") {
-        m.own.interior = inner;
+        m.own.interior = inner, m.before_interior = m.moves.all;
       } else if (k == "material") {
         read_material(*inner, m);
       } else if (k == "clipped_by") {
@@ -237,9 +243,11 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       m.no_reflection = a.flag();
     else if (a.take_word("inverse"))
       m.inverse = !m.inverse;
-    else if (a.take_word("hollow") || a.take_word("sturm") || a.take_word("hierarchy") ||
-             a.take_word("double_illuminate") || a.take_word("open") || a.take_word("no_radiosity") ||
-             a.take_word("split_union") || a.take_word("cutaway_textures") || a.take_word("uv_mapping"))
+    else if (a.take_word("hollow"))
+      m.hollow = a.flag();
+    else if (a.take_word("sturm") || a.take_word("hierarchy") || a.take_word("double_illuminate") ||
+             a.take_word("open") || a.take_word("no_radiosity") || a.take_word("split_union") ||
+             a.take_word("cutaway_textures") || a.take_word("uv_mapping"))
       a.flag();
     else
       a.take();
@@ -254,7 +262,7 @@ void ObjectWriter::read_material(const Block& block, Modifiers& m) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     if (inner == nullptr || *inner == nullptr) continue;
     if ((*inner)->keyword == "texture") m.own.textures.push_back(*inner), m.own.to_texture = m.moves.all;
-    if ((*inner)->keyword == "interior") m.own.interior = *inner;
+    if ((*inner)->keyword == "interior") m.own.interior = *inner, m.before_interior = m.moves.all;
     if ((*inner)->keyword == "material") read_material(**inner, m);
   }
 }
@@ -266,7 +274,11 @@ Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
   if (m.own.has_texture()) {
     dress.textures = m.own.textures, dress.finishes = m.own.finishes, dress.to_texture = m.own.to_texture;
   }
-  if (m.own.interior) dress.interior = m.own.interior;
+  if (m.hollow) dress.hollow = true;
+  if (!m.own.interior) return dress;
+  dress.interior = m.own.interior;
+  const Affine whole = outer.to_world * m.moves.all;
+  dress.interior_to_world = m.before_interior.is_invertible() ? whole * m.before_interior.inverse() : whole;
   return dress;
 }
 
@@ -292,7 +304,7 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   for (Shape& shape : shapes->parts) {
     Dress own = dress;
     if (shape.texture) own.textures = {shape.texture}, own.finishes.clear();
-    own.to_texture = own.to_texture * shape.first.all;
+    own.to_texture = own.to_texture * shape.first.all, own.solid = shapes->solid;
     const Node node = tree.map(block.where, shape.key, shape.value);
     tree.put(node, "material",
              hidden_ || asked_ || shape.invisible
@@ -420,6 +432,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
   }
   if (!moved) move(moves_until(m.moves.list.size()));
   if (m.inverse) built.negative = !built.negative;
+  if (m.hollow && context_.has_fog && !outer.operand) set_hollow(built.node, where);
   if (m.hides()) {
     if (outer.operand) {
       context_.tell("hidden operand", where,
@@ -439,6 +452,13 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
     }
   }
   return built;
+}
+
+/// Fog is in all that the node shows.
+void ObjectWriter::set_hollow(Node object, const Place& where) {
+  const auto is_key = [](const YamlNode* n) { return n->text == "hollow"; };
+  if (std::ranges::any_of(object->items, is_key)) return;
+  context_.tree.put(object, "hollow", context_.tree.flag(where, true));
 }
 
 /// Appends operations to the transform that an object has.

@@ -28,6 +28,8 @@ class ObjectWriter {
   /// rays to lights.
   void add(const std::shared_ptr<const Block>& block, const Moves& moves = {}, bool casts_shadow = true);
   void add_light(const std::shared_ptr<const Block>& block, const Affine& to_world);
+  /// The name of what fills the space outside of solids, by blocks `media`; empty if nothing does.
+  std::string surrounding(const Interior& interior) { return wardrobe_.surrounding(interior); }
 
   /// What became of an object that is asked and not seen.
   struct Asked {
@@ -66,6 +68,7 @@ class ObjectWriter {
   std::vector<Built> build_all(const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer);
   void read_material(const Block& block, Modifiers& modifiers);
   void extend_transform(Node object, const Moves& moves);
+  void set_hollow(Node object, const Place& where);
   Modifiers read_modifiers(const Block& block, Arguments& arguments);
   Dress dress_of(const Modifiers& m, const Outer& outer) const;
   Built finish(const Block& block, const Modifiers& m, const Outer& outer, Built built, bool moved);
@@ -78,7 +81,8 @@ class ObjectWriter {
   int weight(const Block& block);
   /// Whether all of an object has a texture of its own.
   bool is_dressed(const Block& block);
-  bool has_light(const Block& block);
+  /// Whether a block of this keyword is in an object; `known`: of what is declared.
+  static bool holds(std::map<const Block*, bool>& known, const Block& block, std::string_view keyword);
 
   Context& context_;
   bool hidden_ = false;  ///< what is built is not seen: it only cuts
@@ -86,7 +90,7 @@ class ObjectWriter {
   Wardrobe wardrobe_;
   std::map<const Block*, int> uses_;
   std::map<const Block*, int> weights_;
-  std::map<const Block*, bool> dressed_, lit_;  ///< of what is declared: is_dressed, has_light
+  std::map<const Block*, bool> dressed_, lit_, media_in_;  ///< of what is declared
   struct Prototype {
     std::string name;  ///< empty: nothing is left of it
     bool solid = true;

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "io/pov/translate/extent.h"
 #include "io/pov/translate/functions.h"
+#include "io/pov/translate/inside_text.h"
 
 namespace oktett::pov {
 namespace {
@@ -27,7 +29,7 @@ constexpr PatternName kNames[] = {
     {"crackle", "crackle"},
     {"cubic", "cubic"},
     {"cylindrical", "cylindrical"},
-    {"density_file", ""},
+    {"density_file", "voxels"},
     {"dents", "dents"},
     {"facets", ""},
     {"gradient", "linear"},
@@ -44,7 +46,7 @@ constexpr PatternName kNames[] = {
     {"quilted", "quilted"},
     {"radial", "angular"},
     {"ripples", "ripples"},
-    {"slope", ""},
+    {"slope", "slope"},
     {"spherical", "spherical"},
     {"spiral1", "spiral"},
     {"spiral2", "double_spiral"},
@@ -55,7 +57,7 @@ constexpr PatternName kNames[] = {
     {"waves", "waves"},
     {"wood", "rings"},
     {"wrinkles", "wrinkles"},
-    {"aoi", ""},
+    {"aoi", "incidence"},
 };
 constexpr std::array<std::string_view, 7> kLists{"brick",  "checker",    "cubic", "hexagon",
                                                  "square", "triangular", "object"};
@@ -95,6 +97,14 @@ Node turbulence_node(Tree& tree, const Place& where, const PovPattern& p) {
   return map;
 }
 
+/// Whether a block `object` is a pattern, not an object.
+bool block_holds_object(const Block& block) {
+  return std::ranges::any_of(block.elements, [](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    return inner != nullptr && *inner != nullptr && is_object((*inner)->keyword);
+  });
+}
+
 }  // namespace
 
 void PovPattern::move(const Moves& moves) {
@@ -106,6 +116,7 @@ void PovPattern::move(const Moves& moves) {
 std::vector<PovColor> default_colors(const PovPattern& pattern) {
   const PovColor red{{1, 0, 0}}, green{{0, 1, 0}}, blue{{0, 0, 1}};
   if (pattern.word == "brick") return {{{0.5, 0.5, 0.5}}, {{0.6, 0.15, 0.15}}};
+  if (pattern.word == "object") return {{{0, 0, 0}}, {{1, 1, 1}}};
   if (pattern.word == "hexagon" || pattern.word == "triangular") return {blue, green, red};
   if (pattern.word == "cubic") return {red, {{1, 1, 0}}, green, {{0, 1, 1}}, blue, {{1, 0, 1}}};
   return {blue, green};
@@ -120,6 +131,10 @@ void PatternReader::set(Node map, std::string_view key, Node value) {
       return;
     }
   context_.tree.put(map, key, value);
+}
+
+void PatternReader::put_vector(PovPattern& p, std::string_view key, const Vec3d& value) {
+  set(p.own, key, context_.tree.vector(p.where, value));
 }
 
 void PatternReader::put(PovPattern& p, std::string_view key, double value) {
@@ -150,6 +165,19 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
     return true;
   }
   const bool is_image = k == "image_pattern";
+  if (k == "slope") {
+    // In braces.
+    a.take();
+    p.word = k, p.where = block->where, p.key = k, p.own = context_.tree.map(block->where), p.is_list = false;
+    Arguments inner(context_, *block);
+    if (inner.is_numbers()) take_slope(inner, p);
+    return true;
+  }
+  if (k == "object" && block_holds_object(*block)) {
+    a.take();
+    take_object(*block, p);
+    return true;
+  }
   if (!is_image && k != "pigment_pattern") return false;
   a.take();
   p.word = k, p.where = block->where, p.key = "brightness", p.own = context_.tree.map(block->where);
@@ -167,6 +195,23 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
   else
     p.key = "";
   return true;
+}
+
+/// A pattern `object`: its first colour is outside, its second inside. What they are stands in the block,
+/// too, and is read by whoever asked for the pattern.
+void PatternReader::take_object(const Block& block, PovPattern& p) {
+  p.word = "object", p.where = block.where, p.key = "", p.own = context_.tree.map(block.where);
+  p.is_list = true;
+  for (const Element& e : block.elements) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    if (inner == nullptr || *inner == nullptr || !is_object((*inner)->keyword)) continue;
+    if (const auto text = inside_text(context_, **inner)) {
+      // 1 inside and on the surface, 0 outside.
+      set(p.own, "f", context_.tree.text(p.where, "0.5-0.5*sign(" + *text + "-1e-9)"));
+      p.key = "function";
+    }
+    return;
+  }
 }
 
 bool PatternReader::take_function(Arguments& a, PovPattern& p) {
@@ -224,7 +269,42 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
     put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));
   } else if (p.word == "julia" || p.word == "mandel") {
     take_fractal(a, p);
+  } else if (p.word == "slope" && a.is_numbers()) {
+    take_slope(a, p);
+  } else if (p.word == "density_file") {
+    take_density(a, p);
   }
+}
+
+/// A direction with what counts as 0 and 1, and a height likewise; in braces or not.
+void PatternReader::take_slope(Arguments& a, PovPattern& p) {
+  const auto take = [&](const char* what) {
+    const Vec3d direction = a.vector("a direction");
+    const std::string key(what);
+    put_vector(p, key, direction);
+    const std::string prefix = key == "direction" ? "" : "altitude_";
+    if (!a.is_numbers() || a.is_vector()) return length(direction) > 0;
+    const double low = a.number("a number"), high = a.is_numbers() ? a.number("a number") : 0;
+    if (low == high) return length(direction) > 0;
+    put(p, prefix + "low", low), put(p, prefix + "high", high);
+    return length(direction) > 0;
+  };
+  if (!take("direction")) p.key = "";
+  if (a.take_word("altitude") && a.is_numbers()) take("altitude");
+}
+
+/// `df3 "FILE"`, with `interpolate` behind.
+void PatternReader::take_density(Arguments& a, PovPattern& p) {
+  a.take_word("df3");
+  const Place where = a.where();
+  const std::string name = a.text("the name of a file");
+  try {
+    set(p.own, "file", context_.tree.text(where, find_file(context_, where, name)));
+  } catch (const Error& e) {
+    context_.tell("density_file", where, e.what());
+    p.key = "";
+  }
+  set(p.own, "smooth", context_.tree.flag(where, false));
 }
 
 void PatternReader::take_fractal(Arguments& a, PovPattern& p) {
@@ -262,6 +342,11 @@ bool PatternReader::take_later_key(Arguments& a, PovPattern& p) {
     put(p, "offset", std::max(0.0, a.number("a number")));
   } else if (is("crackle", "solid")) {
     set(p.own, "solid", tree.flag(where, a.flag()));
+  } else if (p.key == "voxels" && a.take_word("interpolate")) {
+    const double kind = a.number("a kind");
+    if (kind > 1)
+      context_.tell("density interpolation", where, "densities are interpolated linearly, not by cubes");
+    set(p.own, "smooth", tree.flag(where, kind != 0));
   } else if (p.key == "fractal" && a.take_word("exponent")) {
     put(p, "power", std::clamp(std::trunc(a.number("a number")), 2.0, 33.0));
   } else if (p.key == "fractal" && (a.peek_word() == "interior" || a.peek_word() == "exterior")) {

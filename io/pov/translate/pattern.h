@@ -56,10 +56,14 @@ class PatternReader {
   bool take_block(Arguments& a, PovPattern& p);
   void take_own_keys(Arguments& a, PovPattern& p);
   void take_fractal(Arguments& a, PovPattern& p);
+  void take_slope(Arguments& a, PovPattern& p);
+  void take_density(Arguments& a, PovPattern& p);
+  void take_object(const Block& block, PovPattern& p);
   bool take_modifier(Arguments& a, PovPattern& p);
   bool take_later_key(Arguments& a, PovPattern& p);
   Node warp(const Block& block);
   void put(PovPattern& p, std::string_view key, double value);
+  void put_vector(PovPattern& p, std::string_view key, const Vec3d& value);
   void set(Node map, std::string_view key, Node value);
 
   Context& context_;

@@ -113,8 +113,10 @@ class PigmentReader {
       return;
     }
     const Node before = p.pattern.own;
+    const Block* const object = a.peek_block();
     if (patterns_.take(a, p.pattern)) {
       if (p.pattern.own != before) p.is_average = false, p.entries.clear();
+      if (p.pattern.own != before && p.pattern.word == "object") read_sides(*object, p);
       return;
     }
     if (const Block* const block = a.peek_block()) {
@@ -141,12 +143,13 @@ class PigmentReader {
 
   void inner(const Block& block, Pigment& p) {
     const std::string_view k = block.keyword;
-    if (k == "pigment" || k == "texture") {
+    if (k == "pigment" || k == "texture" || k == "density") {
       if (p.pattern.is_list)
         p.entries.push_back(nested(block));
       else
         read(block, p);
-    } else if (k == "color_map" || k == "colour_map" || k == "pigment_map" || k == "texture_map") {
+    } else if (k == "color_map" || k == "colour_map" || k == "pigment_map" || k == "texture_map" ||
+               k == "density_map") {
       p.entries.clear();
       read_map(block, p);
       if (!p.is_average) p.entries = in_order(p.entries);
@@ -154,8 +157,19 @@ class PigmentReader {
       p.is_average = false, p.entries.clear();
       patterns_.take_image(block, p.pattern);
       image_opacity(block, p);
-    } else if (k == "object") {
-      context_.tell("object pattern", block.where, "the pattern 'object' has no meaning here");
+    }
+  }
+
+  /// The colours or pigments of a pattern `object`, outside and inside.
+  void read_sides(const Block& block, Pigment& p) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      const Block* const inner = a.peek_block();
+      if (inner != nullptr && inner->keyword == "pigment") p.entries.push_back(nested(*inner));
+      if (inner == nullptr && a.is_numbers())
+        p.entries.push_back({0, a.color("a colour"), nullptr});
+      else
+        a.take();
     }
   }
 

@@ -47,10 +47,13 @@ class TextureReader {
         continue;
       }
       Moves moves;
+      const Block* const object = a.peek_block();
       if (pattern.is_none() && take_moves(context_, a, moves)) {
         look.move(moves);
       } else if (!patterns_.take(a, pattern)) {
         a.take();
+      } else if (object != nullptr && object->keyword == "object") {
+        read_sides(*object, base, entries);
       }
     }
     if (pattern.uses_uv && pattern.is_none())
@@ -128,6 +131,16 @@ class TextureReader {
     look.name.clear();
     read(block, look);
     return look;
+  }
+
+  /// The textures of a pattern `object`, outside and inside.
+  void read_sides(const Block& block, const Look& base, std::vector<TextureEntry>& entries) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      const Block* const inner = a.peek_block();
+      a.take();
+      if (inner != nullptr && inner->keyword == "texture") entries.push_back({0, nested(*inner, base)});
+    }
   }
 
   void read_map(const Block& map, const Look& base, std::vector<TextureEntry>& entries) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/pov/translate/atmosphere.h"
 #include "io/pov/translate/look.h"
 #include "io/pov/translate/objects.h"
 #include "io/pov/translate/view.h"
@@ -51,6 +52,13 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
     if (const Node sky = sky_node(context, *block)) s.sky = sky;
     return;
   }
+  if (k == "fog") {
+    const Node fog = fog_node(context, *block);
+    if (fog == nullptr) return;
+    if (s.fogs == nullptr) s.fogs = context.tree.list(block->where);
+    return Tree::push(s.fogs, fog);
+  }
+  if (k == "media") return read_media(context, *block, s.interior.media.emplace_back());
   if (k == "light_group") {
     context.tell("light_group", block->where, "lights of a 'light_group' light all objects");
     for (const Element& e : block->elements)
@@ -69,6 +77,7 @@ void finish_parts(Context& context, TranslatedScene& out) {
   const Place top;
   const Node root = tree.map(top);
   tree.put(root, "oktett", tree.number(top, 1));
+  if (!context.media->items.empty()) tree.put(root, "media", context.media);
   if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
   if (!context.define->items.empty()) tree.put(root, "define", context.define);
   tree.put(root, "objects", context.objects);
@@ -81,6 +90,7 @@ void begin_sections(Context& context) {
   const Place top;
   context.materials = context.tree.map(top), context.define = context.tree.map(top);
   context.objects = context.tree.list(top), context.lights = context.tree.list(top);
+  context.media = context.tree.map(top);
 }
 
 }  // namespace
@@ -125,6 +135,10 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   begin_sections(context);
   const Block* camera = nullptr;
   Surroundings s;
+  context.has_fog = std::ranges::any_of(document.statements, [](const Element& statement) {
+    const Block* const block = block_of(statement);
+    return block != nullptr && (block->keyword == "fog" || block->keyword == "media");
+  });
   ObjectWriter objects(context);
   for (const Element& statement : document.statements) {
     const auto* const block = std::get_if<std::shared_ptr<const Block>>(&statement.value);
@@ -148,6 +162,10 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(root, "background", s.sky != nullptr ? s.sky : color_node(tree, s.background_place, s.background));
   if (!(s.ambient == Vec3d{1, 1, 1}))
     tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
+  if (s.fogs != nullptr) tree.put(root, "fog", s.fogs);
+  const std::string around = s.interior.fills() ? objects.surrounding(s.interior) : "";
+  if (!context.media->items.empty()) tree.put(root, "media", context.media);
+  if (!around.empty()) tree.put(root, "medium", tree.text(top, around));
   if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
   tree.put(root, "lights", context.lights);
   if (!context.define->items.empty()) tree.put(root, "define", context.define);

@@ -2,6 +2,7 @@
 /// \file Cameras, lights and what surrounds a scene. Within io/ only.
 
 #include "io/pov/translate/context.h"
+#include "io/pov/translate/media.h"
 
 namespace oktett::pov {
 
@@ -21,7 +22,9 @@ struct Surroundings {
   double max_trace_level = 5;
   Vec3d ambient{1, 1, 1};
   Vec3d background{0, 0, 0};
-  Node sky = nullptr;  ///< instead, if there is one
+  Node sky = nullptr;   ///< instead, if there is one
+  Node fogs = nullptr;  ///< a list, if there are some
+  Interior interior;    ///< what else fills the space outside of solids
   Place background_place{}, settings_place{};
 };
 void read_global_settings(Context& context, const Block& block, Surroundings& surroundings);

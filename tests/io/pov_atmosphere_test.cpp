@@ -1,0 +1,189 @@
+// Fog, media, reflection and patterns of surfaces in POV-Ray's language: the scene files that say the same.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "io/pov/translate/translate.h"
+#include "io/scene/pov_scene.h"
+#include "io/scene/scene_file.h"
+#include "io/yaml/write_yaml.h"
+#include "render/picture/render.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett::pov_atmosphere_test {
+namespace {
+
+class PovAtmosphere : public testing::Test {
+ protected:
+  pov::TranslatedScene translate(const std::string& text) const {
+    return read_pov_tree(dir.write("scene.pov", "#version 3.7;\n" + text), {}, {});
+  }
+  /// The value of a key of the top level in one line.
+  std::string section(const std::string& text, const std::string& key) const {
+    const pov::TranslatedScene scene = translate(text);
+    for (std::size_t i = 0; i + 1 < scene.root->items.size(); i += 2)
+      if (scene.root->items[i]->text == key) return flow_text(*scene.root->items[i + 1]);
+    return "none";
+  }
+  std::string warnings(const std::string& text) const {
+    std::string all;
+    for (const Warning& w : translate(text).warnings) all += w.message + "\n";
+    return all;
+  }
+  /// What is said of a ball behind its colour.
+  std::string look(const std::string& of) const {
+    const std::string text = section("sphere { 0, 1 " + of + " }", "materials");
+    const std::string begin = "{material: {color: [1, 1, 1], ";
+    return text.starts_with(begin) ? text.substr(begin.size(), text.size() - begin.size() - 2) : text;
+  }
+
+  test::TempDir dir;
+};
+
+TEST_F(PovAtmosphere, FogsAreFogs) {
+  EXPECT_EQ(section("fog { distance 8 color rgbft <0.1, 0.3, 0.7, 0.5, 0.25> }", "fog"),
+            "[{distance: 8, color: [0.1, 0.3, 0.7], filter: 0.5, transmit: 0.25}]");
+  EXPECT_EQ(
+      section("fog { fog_type 2 distance 8 rgb 1 fog_offset 0.5 fog_alt 2 up y rotate x*90 translate 5 }"
+              " fog { distance 3 rgb 0 }",
+              "fog"),
+      "[{distance: 8, color: [1, 1, 1], altitude: 2, offset: 0.5, up: [0, 0, 1]}, {distance: 3, color: "
+      "[0, 0, 0]}]");
+  EXPECT_EQ(section("fog { rgb 1 }", "fog"), "none");
+  EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"),
+            "'turbulence' of a fog is left out\n");
+}
+
+TEST_F(PovAtmosphere, OnlyHollowSolidsAreFullOfFog) {
+  const std::string ball = "sphere { 0, 1 hollow }";
+  EXPECT_EQ(section(ball, "objects").find("hollow"), std::string::npos);
+  EXPECT_NE(section("fog { distance 1 } " + ball, "objects").find("hollow: true"), std::string::npos);
+  EXPECT_EQ(section("fog { distance 1 } sphere { 0, 1 hollow off }", "objects").find("hollow"),
+            std::string::npos);
+}
+
+TEST_F(PovAtmosphere, ReflectionGrowsWithTheAngle) {
+  const std::string plain = "ambient: 0.1, diffuse: 0.6, ";
+  EXPECT_EQ(look("pigment { rgb 1 } finish { reflection { 0.1, 0.9 falloff 3 } }"),
+            plain + "reflection: 0.1, reflection_grazing: 0.9, reflection_falloff: 3");
+  EXPECT_EQ(look("pigment { rgb 1 } finish { reflection { 0.1, 0.9 fresnel on } } interior { ior 1.5 }"),
+            plain + "reflection: 0.1, reflection_grazing: 0.9, reflection_falloff: fresnel, ior: 1.5");
+  // One colour is that at grazing angles.
+  EXPECT_EQ(look("pigment { rgb 1 } finish { reflection { 0.9 fresnel on } } interior { ior 1.5 }"),
+            plain + "reflection_grazing: 0.9, reflection_falloff: fresnel, ior: 1.5");
+  EXPECT_EQ(
+      look("pigment { rgbt 1 } finish { reflection 0.25 conserve_energy } interior { ior 1.5 }"),
+      "ambient: 0, diffuse: 0, reflection: 0.25, conserve_energy: true, transparency: 1, filter: [1, 1, "
+      "1], fresnel: false, ior: 1.5");
+  EXPECT_EQ(warnings("sphere { 0, 1 finish { reflection { 0.5 exponent 2 } } }"),
+            "'exponent of reflection' of a finish has no meaning here, and is left out\n");
+}
+
+TEST_F(PovAtmosphere, InteriorsAreMedia) {
+  const auto media = [&](const std::string& interior, const char* hollow = "hollow") {
+    return section("sphere { 0, 1 pigment { rgbt 1 } interior { " + interior + " } scale 2 " + hollow + " }",
+                   "media");
+  };
+  EXPECT_EQ(media("media { emission 0.5 absorption <1, 2, 3> }"),
+            "{medium: {emission: [0.5, 0.5, 0.5], absorption: [1, 2, 3]}}");
+  EXPECT_EQ(media("media { emission 0.5 }", ""), "none");
+  EXPECT_EQ(media("media { emission 0.5 } media { emission 1 absorption 2 }"),
+            "{medium: {emission: [1.5, 1.5, 1.5], absorption: [2, 2, 2]}}");
+  // A place shows the light there times the scattering, and not a part of it for each direction.
+  EXPECT_EQ(media("media { scattering { 1, 0.5 extinction 1 } }"),
+            "{medium: {scattering: [2, 2, 2], extinction: 0.25}}");
+  EXPECT_EQ(
+      media("media { emission 1 density { spherical } density { rgb 2 } }"),
+      "{medium: {emission: [2, 2, 2], map_density: {spherical: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, "
+      "transform: {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0]}}}");
+  EXPECT_EQ(media("fade_distance 2 fade_power 2 fade_color <0.5, 0, 1>", ""),
+            "{medium: {fade: {distance: 2, power: 2, color: [0.5, 0, 1]}}}");
+  EXPECT_EQ(media("fade_distance 2 fade_power 1001 fade_color <0.5, 0, 1>", ""),
+            "{medium: {absorption: [0.25, 0.5, 0]}}");
+  EXPECT_EQ(section("media { absorption 0.1 }", "medium"), "medium");
+}
+
+TEST_F(PovAtmosphere, PatternsAskTheSurface) {
+  const auto color = [&](const std::string& pigment) {
+    const std::string text = section("sphere { 0, 1 pigment { " + pigment + " } }", "materials");
+    return text.substr(0, text.find(", map:"));
+  };
+  EXPECT_EQ(color("slope { y }"), "{material: {color: {slope: {direction: [0, 1, 0]");
+  EXPECT_EQ(color("slope { -x, 0.25, 0.75 altitude 2*y, -1, 1 }"),
+            "{material: {color: {slope: {direction: [-1, 0, 0], low: 0.25, high: 0.75, altitude: [0, 2, 0], "
+            "altitude_low: -1, altitude_high: 1");
+  EXPECT_TRUE(color("aoi").starts_with("{material: {color: {incidence: {map: [[0, [0, 0, 0]], "))
+      << color("aoi");
+}
+
+/// Squares of a grid of places in the plane z = 0.3, coloured by which side of a solid they are on.
+TEST_F(PovAtmosphere, ObjectsArePatternsOfTheirInsides) {
+  struct Case {
+    const char* solid;
+    bool (*inside)(double x, double y, double z);
+  };
+  const Case cases[] = {
+      {"sphere { <0.2, 0, 0>, 0.7 }",
+       [](double x, double y, double z) { return (x - 0.2) * (x - 0.2) + y * y + z * z < 0.49; }},
+      {"box { -0.5, <0.3, 0.6, 0.4> translate x*0.25 }",
+       [](double x, double y, double z) {
+         return x > -0.25 && x < 0.55 && y > -0.5 && y < 0.6 && z > -0.5 && z < 0.4;
+       }},
+      {"difference { sphere { 0, 0.8 } plane { x, 0.1 } }",
+       [](double x, double y, double z) { return x * x + y * y + z * z < 0.64 && x > 0.1; }},
+      {"cone { -x, 0.9, x, 0.1 scale <1, 1, 2> }",
+       [](double x, double y, double z) {
+         const double r = 0.5 - 0.4 * x;
+         return std::abs(x) < 1 && y * y + z * z / 4 < r * r;
+       }},
+      {"torus { 0.6, 0.35 rotate x*90 inverse }", [](double x, double y, double z) {
+         const double d = std::hypot(x, y) - 0.6;
+         return d * d + z * z > 0.35 * 0.35;
+       }}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.solid);
+    Scene scene = load_scene(dir.write(
+        "scene.pov",
+        std::string(
+            "#version 3.7;\nglobal_settings { assumed_gamma 1 }\ncamera { orthographic location <0, 0, "
+            "-5> direction z up 2.4*y right 2.4*x }\nplane { -z, -0.3 pigment { object { ") +
+            c.solid + " rgb <0.25, 0, 0> rgb <0.75, 0, 0> } } finish { ambient 1 diffuse 0 } }\n"));
+    constexpr std::uint32_t kSize = 22;
+    scene.film.width = scene.film.height = kSize, scene.integrator.samples = 1;
+    const Picture picture = render(scene, {}).picture;
+    for (std::uint32_t k = 0; k < kSize * kSize; ++k) {
+      const double x = ((k % kSize + 0.5) / kSize - 0.5) * 2.4, y = (0.5 - (k / kSize + 0.5) / kSize) * 2.4;
+      EXPECT_EQ(picture.find("R")->values[k], c.inside(x, y, 0.3) ? 0.75f : 0.25f) << x << ' ' << y;
+    }
+  }
+  EXPECT_EQ(warnings("sphere { 0, 1 pigment { object { text { ttf \"a.ttf\" \"b\" 1, 0 } rgb 1 rgb 0 } } }"),
+            "pattern 'object' has no meaning here; one colour stands for it\n");
+}
+
+/// A density that is drawn on a plane at z = 0.5 shows its values and blends the last one into the first.
+TEST_F(PovAtmosphere, DensityFilesArePatterns) {
+  dir.write("ramp.df3", std::string("\0\4\0\1\0\1\0\63\146\314", 10));
+  for (const bool smooth : {false, true}) {
+    const Scene scene = load_scene(dir.write(
+        "scene.pov", std::string("#version 3.7;\nglobal_settings { assumed_gamma 1 }\n"
+                                 "camera { orthographic location <0.5, 0.5, -5> direction z up y*0.01 "
+                                 "right x }\nplane { -z, -0.5 pigment { density_file df3 "
+                                 "\"ramp.df3\" interpolate ") +
+                         (smooth ? "1" : "0") + " } finish { ambient 1 diffuse 0 } }\n"));
+    Scene small = scene;
+    small.film.width = 20, small.film.height = 1, small.integrator.samples = 1;
+    const Picture picture = render(small, {}).picture;
+    const double values[] = {0, 51 / 255.0, 102 / 255.0, 204 / 255.0, 0};
+    for (std::uint32_t x = 0; x < 20; ++x) {
+      const double at = (x + 0.5) / 20 * 4, part = at - std::floor(at);
+      const auto i = static_cast<std::size_t>(at);
+      const double want = smooth ? values[i] * (1 - part) + values[i + 1] * part : values[i];
+      EXPECT_NEAR(picture.find("R")->values[x], want, 1e-5) << x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oktett::pov_atmosphere_test
