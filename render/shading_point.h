@@ -11,44 +11,9 @@
 #include "render/context.h"
 #include "render/material.h"
 #include "render/straight_light.h"
+#include "render/texture_values.h"
 
 namespace oktett {
-
-// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space,
-// attributes by that on the mesh.
-
-/// A place in texture coordinates.
-struct UvPlace {
-  Vec2f uv;
-  Vec2f dx, dy;  ///< changes of uv from this pixel to its neighbours; zero when unknown
-};
-
-/// Where textures are looked up.
-struct TexturePlace : UvPlace {
-  Vec3d position;  ///< in the object's own space
-  UvPlace second;  ///< of textures whose uv_layer is 1
-  MeshPoint on_mesh;
-  Vec3d normal{0, 0, 0}, to_viewer{0, 0, 0};  ///< as of PatternTextures
-};
-
-/// The textures of a scene, and what reads its images (null: they are white).
-struct Textures {
-  std::span<const Texture> list;
-  const TextureSampler* images = nullptr;
-};
-
-/// The light of the background from a direction.
-Color background_color(const RenderContext& context, const Vec3f& direction);
-
-/// The colour of a texture; white for kNoId.
-Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place);
-inline Color texture_color(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
-  return texture_color(Textures{context.texture_list, context.textures}, texture, place);
-}
-
-bool has_textures(const Material& material);
-
-// ---- Points.
 
 /// What is known of a ray's path; it decides how finely textures are looked up.
 struct RayHistory {
