@@ -98,6 +98,13 @@ TEST_F(PovAtmosphere, InteriorsAreMedia) {
       media("media { emission 1 density { spherical } density { rgb 2 } }"),
       "{medium: {emission: [2, 2, 2], map_density: {spherical: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, "
       "transform: {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0]}}}");
+  // Several patterns multiply each other.
+  EXPECT_NE(
+      media("media { emission 1 density { spherical } density { planar } }")
+          .find(
+              "map_density: {over: {color: [0, 0, 0], filter: {spherical: {map: [[0, [0, 0, 0]], [1, [1, 1, "
+              "1]]]}}, under: {planar: {map: "),
+      std::string::npos);
   EXPECT_EQ(media("fade_distance 2 fade_power 2 fade_color <0.5, 0, 1>", ""),
             "{medium: {fade: {distance: 2, power: 2, color: [0.5, 0, 1]}}}");
   EXPECT_EQ(media("fade_distance 2 fade_power 1001 fade_color <0.5, 0, 1>", ""),

@@ -132,23 +132,19 @@ class MediumNode {
 
   void put_media(const PovMedia& media, const Affine& to_world) {
     Vec3d factor{1, 1, 1};
-    const Pigment* pattern = nullptr;
+    Node map = nullptr;
     for (const Pigment& density : media.densities) {
       if (is_solid(density)) {
         factor = factor * density.solid.rgb;
-      } else if (pattern == nullptr) {
-        pattern = &density;
-      } else {
-        context_.tell("several densities", density.pattern.where,
-                      "of several patterns of one density the first is shown");
+        continue;
       }
+      const Node one = pigment_node(context_, where_, density, {[](const PovColor& c) { return c.rgb; }});
+      if (one->kind == YamlKind::map) map = map == nullptr ? one : product(map, one);
     }
     absorption_ = absorption_ + media.absorption * factor;
     put_color("emission", media.emission * factor);
     put_scattering(media, factor);
-    if (pattern == nullptr) return;
-    const Node map = pigment_node(context_, where_, *pattern, {[](const PovColor& c) { return c.rgb; }});
-    if (map->kind != YamlKind::map) return;
+    if (map == nullptr) return;
     tree_.put(node_, "map_density", map);
     if (to_world == Affine{}) return;
     Moves moves;
@@ -177,6 +173,14 @@ class MediumNode {
   }
 
  private:
+  /// Two textures that multiply each other.
+  Node product(Node a, Node b) {
+    const Node keys = tree_.map(where_);
+    tree_.put(keys, "color", color_node(tree_, where_, {0, 0, 0}));
+    tree_.put(keys, "filter", a), tree_.put(keys, "under", b);
+    return tree_.map(where_, "over", keys);
+  }
+
   void put_color(const char* key, const Vec3d& rgb) {
     if (!(rgb == Vec3d{0, 0, 0})) tree_.put(node_, key, color_node(tree_, where_, rgb));
   }
