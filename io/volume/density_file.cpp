@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/text/file_content.h"
+#include "io/text/files.h"
 #include "io/text/scan.h"
 
 namespace oktett {
