@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 
 #include "accel/accel_data.h"
 #include "accel/batch_pieces.h"
@@ -259,6 +260,7 @@ template <class Lists>
 static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& code, Lists& out) {
   static thread_local RayHitList found;
   found.clear();
+  found.scratch().keeps_unseen = std::is_same_v<Lists, CrossingLists>;
   code.all_hits(accel, rays, found);
   if (accel.has_exact)
     merge_by_ray(accel, found.hits(), rays.size, out);

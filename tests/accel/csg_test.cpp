@@ -8,6 +8,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/hit_place.h"
+#include "accel/point_query.h"
 #include "verify/checks/csg.h"
 #include "verify/oracles/mesh.h"
 
@@ -409,6 +410,11 @@ TEST(Csg, WhatOnlyCutsHasNoSurface) {
     EXPECT_EQ(places(*half, {{8, 0, 0}, 0, {-1, 0, 0}, kInfinity}), Distances{to});
     EXPECT_EQ(places(*rest, ray_along_x()), Distances{to});
     EXPECT_EQ(places(*rest, {{-1, 0.1f, 0}, 0, {0, 1, 0}, kInfinity}), Distances{});
+    // What is inside is as if all were seen.
+    for (const float x : {-0.3f, 0.3f}) {
+      EXPECT_EQ(inside(*half, Vec3f{x, 0.1f, 0.1f}), x < 0);
+      EXPECT_EQ(inside(*rest, Vec3f{x, 0.1f, 0.1f}), x > 0);
+    }
   }
   const auto walls = built(whole(combine(CsgOp::intersect, {cube({-1, -1, -1}, {0, 1, 1}, 1), cut})));
   EXPECT_EQ(crossings(*walls, ray_along_x()), (Distances{7, 8}));

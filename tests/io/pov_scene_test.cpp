@@ -127,7 +127,7 @@ TEST(PovScene, ShapesHaveTheirKeys) {
        "0]]], uv: [0, 0, 0.5, 0, 0.5, 1, 0, 1]}}"},
       {"parametric { function { u*cos(v) } function { u*sin(v) } function { v } <0,-1>, <1,2> contained_by { "
        "sphere { 0, 3 } } max_gradient 2 accuracy 0.001 precompute 10 x,y,z }",
-       "{parametric: {x: \"(u * cos(v))\", y: \"(u * sin(v))\", z: \"v\", from: [0, -1], to: [1, 2], clip: "
+       "{parametric: {x: \"(u * cos(v))\", y: \"(u * sin(v))\", z: v, from: [0, -1], to: [1, 2], clip: "
        "{min: [-3, "
        "-3, -3], max: [3, 3, 3]}}}"},
       {"triangle { 0, x, y }", "{mesh: {file: triangle.ply}}"},

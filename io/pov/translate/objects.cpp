@@ -306,10 +306,11 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
     if (shape.texture) own.textures = {shape.texture}, own.finishes.clear();
     own.to_texture = own.to_texture * shape.first.all, own.solid = shapes->solid;
     const Node node = tree.map(block.where, shape.key, shape.value);
-    tree.put(node, "material",
-             hidden_ || asked_ || shape.invisible
-                 ? wardrobe_.invisible(block.where)
-                 : wardrobe_.material(own, outer.default_texture, block.where));
+    // What only cuts has no surface; that of what is asked has no look.
+    if (hidden_ || shape.invisible)
+      tree.put(node, "material", wardrobe_.invisible(block.where));
+    else if (!asked_)
+      tree.put(node, "material", wardrobe_.material(own, outer.default_texture, block.where));
     Moves all = shape.first;
     if (single && m.clips.empty()) all.add(m.moves);
     if (const Node transform = moves_node(tree, block.where, all)) tree.put(node, "transform", transform);
