@@ -19,9 +19,7 @@ constexpr const char* kPatterns[] = {
 #undef OP
 };
 
-}  // namespace
-
-std::string function_text(const FunctionTape& tape, std::span<const std::string_view> variables) {
+std::string written_out(const FunctionTape& tape, std::span<const std::string_view> variables) {
   std::vector<std::string> r(static_cast<std::size_t>(tape.registers));
   std::ranges::copy(variables, r.begin());
   for (const TapeStep& s : tape.steps) {
@@ -37,6 +35,13 @@ std::string function_text(const FunctionTape& tape, std::span<const std::string_
                               kMaxExpressionLength));
   }
   return r[tape.result];
+}
+
+}  // namespace
+
+std::string function_text(const FunctionTape& tape, std::span<const std::string_view> variables) {
+  // Read once: operands that may be exchanged stand in the order of the text then.
+  return written_out(compile_function(written_out(tape, variables), variables), variables);
 }
 
 }  // namespace oktett

@@ -50,6 +50,7 @@ bool is_given(const ParametricShape& s, std::string_view key) { return key != "c
 bool is_given(const MeshShape& s, std::string_view key) {
   return key != "stroke_width" || s.stroke_width > 0;
 }
+bool is_given(const MetaballsShape& s, std::string_view key) { return key != "balls" || !s.balls.empty(); }
 bool is_given(const HeightFieldShape& s, std::string_view key) { return key != "base" || !s.open; }
 
 /// Gathers `key: value` of each parameter of a shape. Those without a member are left to the caller.

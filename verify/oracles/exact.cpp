@@ -72,9 +72,11 @@ std::vector<ExactCase> make_cases() {
   std::vector<ExactCase> all{
       {"torus", [](CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }},
       {"cyclide", cyclide}};
-  for (const auto& family : {quadric_cases(), polynomial_cases(), prism_cases(), sweep_cases(), patch_cases(),
-                             parametric_cases(), superquadric_cases(), metaball_cases(), blobtree_cases(),
-                             function_cases(), fractal_cases(), height_cases()})
+  // New ones come last: the others keep their numbers, and with them their random shapes.
+  for (const auto& family :
+       {quadric_cases(), polynomial_cases(), prism_cases(), sweep_cases(), superquadric_cases(),
+        metaball_cases(), blobtree_cases(), function_cases(), fractal_cases(), height_cases(),
+        capsule_cases(), patch_cases(), parametric_cases()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

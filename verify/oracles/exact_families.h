@@ -39,6 +39,7 @@ std::vector<ExactCase> superquadric_cases();
 /// Metaballs and blob trees.
 std::vector<ExactCase> metaball_cases();
 std::vector<ExactCase> blobtree_cases();
+std::vector<ExactCase> capsule_cases();
 /// Functions of the user's own.
 std::vector<ExactCase> function_cases();
 /// Fractals.
