@@ -100,7 +100,7 @@ static_assert(std::same_as<decltype(Ray::origin), Vec3f> && std::same_as<decltyp
 static_assert(std::same_as<decltype(Hit::item), std::uint32_t> && sizeof(Hit) == 20 && sizeof(Ray) == 32);
 static_assert(std::same_as<decltype(SurfaceInteraction::user), std::uint32_t>);
 static_assert(sizeof(InstancePlace) == 56);
-static_assert(has<FunctionTape(std::string_view)>(compile_function));
+static_assert(has<FunctionTape(std::string_view, std::span<const std::string_view>)>(compile_function));
 static_assert(has<std::vector<Monomial>(std::string_view)>(expand_polynomial));
 static_assert(has<std::shared_ptr<const HeightGrid>(std::uint32_t, std::uint32_t, Column<float>,
                                                     HeightInterpolation)>(make_height_grid));
