@@ -139,9 +139,7 @@ MaybeForm finish(const ShapeNode& at, ParametricShape& shape) {
 }
 
 MaybeForm finish(const ShapeNode& at, JuliaShape& shape) {
-  Julia::Pool pool;
-  Julia::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("nothing of the set is in this slice");
+  if (is_empty(shape)) return at.skip("nothing of the set is in this slice");
   return shape;
 }
 

@@ -1,6 +1,8 @@
 #include "kernels/fractals/julia.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace oktett {
 namespace {
@@ -8,7 +10,7 @@ namespace {
 /// Halvings of the box that is looked at for bounds.
 constexpr int kBoundLevels = 6;
 /// Cells along the longest side of the bounds.
-constexpr double kCellsAlong = 64;
+constexpr double kCellsAlong = 32;
 /// Time to look for crossings in a cell, in units of that to visit a node.
 constexpr double kJuliaCellCost = 60;
 
@@ -61,13 +63,12 @@ void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int le
                 half / 2, levels - 1, lo, hi);
 }
 
-}  // namespace
-
-void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
+/// The element and a box around it; nothing if it is empty or not as it must be.
+std::optional<std::pair<JuliaElement, CellBox>> bounded_element(const JuliaShape& s) {
   const double size = std::sqrt(s.c[0] * s.c[0] + s.c[1] * s.c[1] + s.c[2] * s.c[2] + s.c[3] * s.c[3]);
   if (!(size <= 2) || !std::isfinite(s.slice) || s.iterations < 1 || s.iterations > kMaxJuliaIterations)
-    return;
-  if (s.power != 2 && s.power != 3) return;
+    return std::nullopt;
+  if (s.power != 2 && s.power != 3) return std::nullopt;
   const double radius = 0.5 * (1 + std::sqrt(1 + 4 * size));
   // A radius that is too small, too great or no number leaves that of the formula.
   const double escape = s.escape > radius && s.escape <= JuliaShape::kMostEscape ? s.escape : radius;
@@ -81,11 +82,22 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   const double inf = std::numeric_limits<double>::infinity();
   Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
   grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);
-  if (!(lo.x < hi.x)) return;
+  if (!(lo.x < hi.x)) return std::nullopt;
   e.size = max_component(hi - lo);
+  return std::pair{e, CellBox{lo, hi}};
+}
+
+}  // namespace
+
+bool is_empty(const JuliaShape& shape) { return !bounded_element(shape); }
+
+void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
+  const auto found = bounded_element(s);
+  if (!found) return;
+  const auto& [e, box] = *found;
   const auto element = static_cast<std::uint32_t>(pool.elements.size());
   const std::uint32_t all[1] = {0};
-  pool.tree.divide(JuliaRule(e), {lo, hi}, all, element, pool.cells);
+  pool.tree.divide(JuliaRule(e), box, all, element, pool.cells);
   add_element(pool, e, place.to_world, place);
 }
 

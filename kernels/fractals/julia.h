@@ -193,6 +193,9 @@ struct JuliaPool : ExactPool<JuliaElement> {
   std::size_t bytes() const { return ExactPool::bytes() + tree.bytes(); }
 };
 
+/// Whether a Julia set has no points, as far as balls of a 64th of its bounds tell.
+bool is_empty(const JuliaShape& shape);
+
 struct Julia {
   using Data = JuliaShape;
   using Pool = JuliaPool;
