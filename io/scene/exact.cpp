@@ -99,6 +99,15 @@ MaybeForm finish(const ShapeNode& at, TurnedProfile& profile) {
   return shape;
 }
 
+/// The shape, unless the surface has nothing to show of it.
+template <class Surface, class Form>
+static MaybeForm unless_empty(const ShapeNode& at, const Form& shape, const char* why) {
+  typename Surface::Pool pool;
+  Surface::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip(why);
+  return shape;
+}
+
 MaybeForm finish(const ShapeNode& at, PrismShape& shape) {
   using Curve = PrismShape::Curve;
   const auto places = list_items(at.fields.require("outlines"), "outlines");
@@ -111,31 +120,19 @@ MaybeForm finish(const ShapeNode& at, PrismShape& shape) {
     if (n < least)
       throw Error(places[i]->where(), fmt::format("expected at least {} points, found {}", least, n));
   }
-  Prism::Pool pool;
-  Prism::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("the outlines surround nothing");
-  return shape;
+  return unless_empty<Prism>(at, shape, "the outlines surround nothing");
 }
 
 MaybeForm finish(const ShapeNode& at, SphereSweepShape& shape) {
-  SphereSweep::Pool pool;
-  SphereSweep::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("all radii are zero");
-  return shape;
+  return unless_empty<SphereSweep>(at, shape, "all radii are zero");
 }
 
 MaybeForm finish(const ShapeNode& at, BezierPatchShape& shape) {
-  BezierPatch::Pool pool;
-  BezierPatch::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("all control points are in one place");
-  return shape;
+  return unless_empty<BezierPatch>(at, shape, "all control points are in one place");
 }
 
 MaybeForm finish(const ShapeNode& at, ParametricShape& shape) {
-  Parametric::Pool pool;
-  Parametric::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("the functions give no points that could be seen");
-  return shape;
+  return unless_empty<Parametric>(at, shape, "the functions give no points that could be seen");
 }
 
 MaybeForm finish(const ShapeNode& at, JuliaShape& shape) {
@@ -144,10 +141,7 @@ MaybeForm finish(const ShapeNode& at, JuliaShape& shape) {
 }
 
 MaybeForm finish(const ShapeNode& at, TerrainShape& shape) {
-  Terrain::Pool pool;
-  Terrain::add(pool, shape, {});
-  if (pool.elements.empty()) return at.skip("the landscape lies below its base");
-  return shape;
+  return unless_empty<Terrain>(at, shape, "the landscape lies below its base");
 }
 
 }  // namespace oktett

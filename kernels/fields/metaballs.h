@@ -112,8 +112,8 @@ OKTETT_NOINLINE int find_stretches(const Ball& ball, const BallForm& form, const
   const Vec3<D> p = by_rows(sub_lanes(l.p, broadcast<D>(ball.center))), u = by_rows(l.u);
   out[0] = Stretch<D>(p, u);
   if (form.inverse_axis == 0) return 1;
-  // The segment's nearest place is at h0 + h1 s of it: in front of it the distance is that from one end,
-  // behind it that from the other.
+  // The nearest point of the segment is at the fraction h0 + h1 s of its length. Below 0 that is its first
+  // end, above 1 its last.
   const Vec3<D> axis = broadcast<D>(form.axis);
   const D zero(0.0), one(1.0), inf(std::numeric_limits<double>::infinity());
   const D h0 = dot_lanes(p, axis) * D(form.inverse_axis), h1 = dot_lanes(u, axis) * D(form.inverse_axis);

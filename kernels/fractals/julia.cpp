@@ -14,7 +14,7 @@ constexpr double kCellsAlong = 32;
 /// Time to look for crossings in a cell, in units of that to visit a node.
 constexpr double kJuliaCellCost = 60;
 
-/// Bounds on |z_n|^2 - R^2 in the ball about p, but for the sign of unknown size.
+/// The sign of |z_n|^2 - R^2 in the ball about p: from -1 to 1 where it is not certain.
 CellRange range_in(const JuliaElement& e, const Vec3d& p, double radius) {
   JuliaNumber<double> z{p.x, p.y, p.z, e.slice};
   double eps = radius * (1 + 0x1p-40);

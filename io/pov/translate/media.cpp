@@ -36,6 +36,10 @@ void read_scattering(Context& context, const Block& block, PovMedia& media) {
   }
 }
 
+void move_densities(PovMedia& media, const Moves& moves) {
+  for (Pigment& density : media.densities) density.pattern.move(moves);
+}
+
 }  // namespace
 
 void read_media(Context& context, const Block& block, PovMedia& media) {
@@ -44,7 +48,7 @@ void read_media(Context& context, const Block& block, PovMedia& media) {
   while (!a.at_end()) {
     Moves moves;
     if (take_moves(context, a, moves)) {
-      for (Pigment& density : media.densities) density.pattern.move(moves);
+      move_densities(media, moves);
     } else if (const Block* const inner = a.peek_block()) {
       a.take();
       if (inner->keyword == "media")
@@ -70,8 +74,7 @@ void read_interior(Context& context, const Block& block, Interior& interior) {
     const Place where = a.where();
     Moves moves;
     if (take_moves(context, a, moves)) {
-      for (PovMedia& media : interior.media)
-        for (Pigment& density : media.densities) density.pattern.move(moves);
+      for (PovMedia& media : interior.media) move_densities(media, moves);
     } else if (const Block* const inner = a.peek_block()) {
       a.take();
       if (inner->keyword == "interior")
