@@ -7,7 +7,7 @@
 /// one leads in. So the ray is inside of the flat ends and between the sides by one and the same count.
 
 #include "kernels/closed/surface_points.h"
-#include "kernels/exact/exact.h"
+#include "kernels/exact/line_columns.h"
 #include "kernels/exact/outline.h"
 
 namespace oktett {
@@ -34,23 +34,18 @@ struct Prism {
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    constexpr int W = D::kWidth;
     const PrismElement& e = pool.elements[cell.element];
-    double ray[6][W], begins[W];
-    const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
-    for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
-    select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
+    const LineColumns<D> rays(line, range);
     CrossingColumns<K, D> lists;
     for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
-      const Vec3d o{ray[0][i], ray[1][i], ray[2][i]}, d{ray[3][i], ray[4][i], ray[5][i]};
-      Seen seen(e, o, d);
+      Seen seen(e, rays.o(i), rays.d(i));
       if (!seen.may_meet) continue;
       e.outlines.each_candidate<typename D::Isa>(
           seen.line, cell.begin, cell.count,
           [&](const std::uint32_t* numbers, int count) { seen.add(numbers, count); });
       Listed found[K];
-      const int count = seen.list(begins[i], K, found, lists.up_to[i]);
+      const int count = seen.list(rays.begin(i), K, found, lists.up_to[i]);
       for (int k = 0; k < count; ++k)
         lists.t[k][i] = found[k].t, lists.turn[k][i] = found[k].turn, lists.part[k][i] = found[k].part;
     }

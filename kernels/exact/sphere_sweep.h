@@ -9,7 +9,7 @@
 /// beginning and the greatest end of these; both are at an end of the interval or where the slope of one of
 /// them is zero: 4 b'^2 D = D'^2, of degree 2 or 10. What is inside of some piece is inside.
 
-#include "kernels/exact/exact.h"
+#include "kernels/exact/line_columns.h"
 #include "kernels/exact/sphere_sweep_data.h"
 
 namespace oktett {
@@ -47,18 +47,13 @@ struct SphereSweep {
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    constexpr int W = D::kWidth;
     const SphereSweepElement& e = pool.elements[cell.element];
-    double ray[6][W], begins[W];
-    const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
-    for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
-    select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
+    const LineColumns<D> rays(line, range);
     CrossingColumns<K, D> lists;
     for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
       double t[K];
-      const int count = list(e, {ray[0][i], ray[1][i], ray[2][i]}, {ray[3][i], ray[4][i], ray[5][i]},
-                             begins[i], K, t, lists.turn[0][i], lists.up_to[i]);
+      const int count = list(e, rays.o(i), rays.d(i), rays.begin(i), K, t, lists.turn[0][i], lists.up_to[i]);
       const double first = lists.turn[0][i];
       for (int k = 0; k < count; ++k)
         lists.t[k][i] = t[k], lists.turn[k][i] = k % 2 == 0 ? first : -first, lists.part[k][i] = 0;

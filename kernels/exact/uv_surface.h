@@ -19,6 +19,7 @@
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact/exact_pool.h"
+#include "kernels/exact/line_columns.h"
 #include "kernels/exact/march.h"
 #include "kernels/exact/uv_solver.h"
 
@@ -113,18 +114,13 @@ struct UvSurface {
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    constexpr int W = D::kWidth;
-    double ray[6][W], begins[W];
-    const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
-    for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
-    select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
+    const LineColumns<D> rays(line, range);
     CrossingColumns<K, D> lists;
     for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
       double t[K], turn[K];
-      const int count =
-          S::first_of(pool.elements[cell.element], cell.begin, {ray[0][i], ray[1][i], ray[2][i]},
-                      {ray[3][i], ray[4][i], ray[5][i]}, begins[i], K, t, turn, lists.up_to[i]);
+      const int count = S::first_of(pool.elements[cell.element], cell.begin, rays.o(i), rays.d(i),
+                                    rays.begin(i), K, t, turn, lists.up_to[i]);
       for (int k = 0; k < count; ++k)
         lists.t[k][i] = t[k], lists.turn[k][i] = turn[k], lists.part[k][i] = static_cast<double>(cell.begin);
     }

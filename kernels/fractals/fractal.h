@@ -13,6 +13,7 @@
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact/exact_pool.h"
+#include "kernels/exact/line_columns.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {
@@ -180,18 +181,13 @@ struct Fractal {
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    constexpr int W = D::kWidth;
-    double o[3][W], d[3][W], a[W], b[W];
-    line.o.x.store(o[0]), line.o.y.store(o[1]), line.o.z.store(o[2]);
-    line.d.x.store(d[0]), line.d.y.store(d[1]), line.d.z.store(d[2]);
-    range.a.store(a), range.b.store(b);
+    const LineColumns<D> rays(line, range);
     CrossingColumns<K, D> columns;
     for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
       FractalCrossing found[K];
       const int count =
-          F::find(pool.elements[cell.element],
-                  {{o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, a[i], b[i]}, found, K);
+          F::find(pool.elements[cell.element], {rays.o(i), rays.d(i), rays.a(i), rays.b(i)}, found, K);
       for (int k = 0; k < count; ++k)
         columns.t[k][i] = found[k].t, columns.turn[k][i] = found[k].turn, columns.part[k][i] = found[k].part;
       if (count == K) columns.up_to[i] = found[K - 1].t;
