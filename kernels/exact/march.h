@@ -4,7 +4,8 @@
 ///
 /// `field` gives, in lanes,
 /// - field.over(t): Dual<Interval<D>>, enclosures of f and f' over an interval of t;
-/// - field.at(t): an enclosure of f at a point.
+/// - field.at(t): an enclosure of f at a point;
+/// - Field::kCentred, if what over(t) gives is as narrow as the mean value form.
 ///
 /// The ray is walked from a to b. A step over which 0 is not in f (R. E. Moore: Interval Analysis, 1966), nor
 /// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long, but for
@@ -132,14 +133,17 @@ struct March {
     auto noise = open & ~open;
     // Where the first step has one sign, so has its beginning.
     if (first && any(open)) s = first_sign = select(open, certain_sign(field.at(t)), first_sign);
-    if (any(open & smooth)) {
+    auto asked = open & smooth;
+    // Rounding matters in short steps alone; for longer ones the middle would tell nothing new.
+    if constexpr (requires { Field::kCentred; }) asked = asked & (e - t <= least * D(0x1p28));
+    if (any(asked)) {
       const Interval<D> at_m = field.at(m);
       const Interval<D> mean = at_m + f.d * (x - Interval<D>(m));
-      value = select(smooth & mean.is_bounded(), intersect(f.v, mean), f.v);
+      value = select(asked & mean.is_bounded(), intersect(f.v, mean), f.v);
       sign = select(open, certain_sign(value), sign);
       open = live & (sign == zero);
       // Where the sign in the middle is certain, as beside a pole, a wide enclosure there is no noise.
-      noise = open & smooth & (certain_sign(at_m) == zero) &
+      noise = open & asked & (certain_sign(at_m) == zero) &
               (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
     }
     auto known = live & ~open, monotone = open & smooth & ((zero < f.d.lo) | (f.d.hi < zero));

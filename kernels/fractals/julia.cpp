@@ -10,7 +10,7 @@ namespace {
 /// Halvings of the box that is looked at for bounds.
 constexpr int kBoundLevels = 6;
 /// Cells along the longest side of the bounds.
-constexpr double kCellsAlong = 32;
+constexpr double kCellsAlong = 64;
 /// Time to look for crossings in a cell, in units of that to visit a node.
 constexpr double kJuliaCellCost = 60;
 

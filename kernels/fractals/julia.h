@@ -96,6 +96,7 @@ struct JuliaField {
   /// Roundings are below this, relative; one iteration makes fewer than eight, of cubes fewer than 32.
   static constexpr double kRound = 0x1p-49, kRoundOfCubes = 0x1p-47;
   static constexpr double kHuge = 1e40;
+  static constexpr bool kCentred = true;
 
   using Number = JuliaNumber<D>;
 
@@ -128,18 +129,18 @@ struct JuliaField {
       const auto stays = ~(escaped | lost);
       if (n == e.iterations || none(stays)) break;
       const D all = slope + phi;
+      // What has escaped or is lost goes on as anything: to hold it where it was would make each step wait.
       if (e.power == 2) {
-        eps = select(stays, product * (two * length * eps + r * r) + u * (zz + cc + length * slope * half),
-                     eps);
-        phi = select(stays, product * (two * (length * phi + r * all)) + u * length * slope, phi);
+        eps = product * (two * length * eps + r * r) + u * (zz + cc + length * slope * half);
+        phi = product * (two * (length * phi + r * all)) + u * length * slope;
       } else {
         const D squared = product * product;
         const D off = three * zz * eps + (three * length + r) * (r * r);
         const D turn = three * (zz * phi + (two * length + r) * r * all);
-        eps = select(stays, squared * off + u * (zz * length + cc + zz * slope * half), eps);
-        phi = select(stays, squared * turn + u * zz * slope, phi);
+        eps = squared * off + u * (zz * length + cc + zz * slope * half);
+        phi = squared * turn + u * zz * slope;
       }
-      w.set(stays, z.next_slope(e, w)), z.set(stays, z.next(e));
+      w = z.next_slope(e, w), z = z.next(e);
     }
     const D zz = z.norm2(), length = root_above(zz), slope = root_above(w.norm2()), r = slope * half + eps;
     const D by_h = z.twice_along(w);
@@ -173,12 +174,10 @@ struct JuliaField {
       lost = lost | ~(length + eps < D(kHuge));
       const auto stays = ~(escaped | lost);
       if (n == e.iterations || none(stays)) break;
-      const D grown = e.power == 2
-                          ? product * (two * length * eps + eps * eps) + u * (zz + cc)
-                          : product * product * (three * zz * eps + (three * length + eps) * (eps * eps)) +
-                                u * (zz * length + cc);
-      eps = select(stays, grown, eps);
-      z.set(stays, z.next(e));
+      eps = e.power == 2 ? product * (two * length * eps + eps * eps) + u * (zz + cc)
+                         : product * product * (three * zz * eps + (three * length + eps) * (eps * eps)) +
+                               u * (zz * length + cc);
+      z = z.next(e);
       zz = z.norm2(), length = root_above(zz);
     }
     const D value = zz - limit, off = two * length * eps + u * (zz + limit), huge(kHuge * kHuge);
