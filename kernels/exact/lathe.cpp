@@ -15,13 +15,18 @@ using Piece = LatheElement::Piece;
 double cubic_slope(const double (&c)[4], double v) { return (3 * c[3] * v + 2 * c[2]) * v + c[1]; }
 double cubic_curve(const double (&c)[4], double v) { return 6 * c[3] * v + 2 * c[2]; }
 
-/// From Bezier's control points to powers of v = 2 u - 1.
+/// From Bezier's control points to powers of v = 2 u - 1. What rounding left of powers that are not there
+/// becomes zero, so that straight pieces and parabolas are solved as such.
 void powers(double p0, double p1, double p2, double p3, double (&c)[4]) {
   c[0] = (p0 + 3 * p1 + 3 * p2 + p3) / 8;
   c[1] = 3 * ((p3 - p0) + (p2 - p1)) / 8;
   c[2] = 3 * ((p0 - p1) + (p3 - p2)) / 8;
   c[3] = ((p3 - p0) - 3 * (p2 - p1)) / 8;
+  const double rounding = 0x1p-50 * (std::abs(p0) + std::abs(p1) + std::abs(p2) + std::abs(p3));
+  for (int i = 3; i > 1 && std::abs(c[i]) <= rounding; --i) c[i] = 0;
 }
+
+int degree_of(const double (&c)[4]) { return c[3] != 0 ? 3 : c[2] != 0 ? 2 : 1; }
 
 struct CurveInterval {
   double lo, hi;
@@ -38,6 +43,7 @@ std::vector<Piece> pieces_of(const std::vector<ProfilePoint>& p) {
     Piece piece{};
     powers(p[i].radius, p[i + 1].radius, p[i + 2].radius, p[i + 3].radius, piece.r);
     powers(p[i].height, p[i + 1].height, p[i + 2].height, p[i + 3].height, piece.y);
+    piece.degree = std::max(degree_of(piece.r), degree_of(piece.y));
     piece.radius[0] = p[i].radius, piece.radius[1] = p[i + 3].radius;
     piece.height[0] = p[i].height, piece.height[1] = p[i + 3].height;
     const CurveInterval y = range_of(piece.y);
@@ -74,10 +80,13 @@ double bounds_distance2(const Piece& p, double rho, double y) {
 /// Takes the nearest point of piece `k` if it is nearer, or as near and on an earlier piece.
 void keep_nearest(const LatheElement& e, std::size_t k, double rho, double y, CurvePoint& best) {
   const Piece& p = e.pieces[k];
-  constexpr int kSteps = 8;
+  // The distance from a straight piece has one minimum, which Newton's first step finds from anywhere.
+  const bool straight = p.degree == 1;
+  const int places = straight ? 1 : 8;
+  const double longest = straight ? 2 : 0.25;
   double start = 0, least = HUGE_VAL;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double v = -1 + 2.0 * i / kSteps, a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
+  for (int i = 0; i <= places; ++i) {
+    const double v = -1 + 2.0 * i / places, a = cubic(p.r, v) - rho, b = cubic(p.y, v) - y;
     if (a * a + b * b < least) least = a * a + b * b, start = v;
   }
   double v = start;
@@ -89,8 +98,9 @@ void keep_nearest(const LatheElement& e, std::size_t k, double rho, double y, Cu
     const double step = slope / (curve > 0.25 * speed ? curve : speed);
     if (!std::isfinite(step)) break;
     const double before = v;
-    v = std::clamp(v - std::clamp(step, -0.25, 0.25), -1.0, 1.0);
-    if (v == before) break;
+    v = std::clamp(v - std::clamp(step, -longest, longest), -1.0, 1.0);
+    // The next step would be about the square of this one.
+    if (v == before || std::abs(step) < 0x1p-30) break;
   }
   for (const double w : {start, v}) {
     const double a = cubic(p.r, w) - rho, b = cubic(p.y, w) - y, distance2 = a * a + b * b;

@@ -2,11 +2,12 @@
 /// \file Surfaces of revolution whose profile is any plane curve: cubic Bezier pieces (r(v), y(v)).
 ///
 /// A ray that rises or falls is at the height y(v) at one t, so that it meets the surface where
-/// (x(t)^2 + z(t)^2) - r(v)^2 is zero: of degree 6 in v. One that is level meets the piece where y(v) is its
-/// height, of degree 3, and then a circle. Whether the ray is inside of the circle where two pieces meet is
-/// decided once, by numbers that both have in common.
+/// (x(t)^2 + z(t)^2) - r(v)^2 is zero: of degree 6 in v, of straight pieces 2, of parabolas 4. One that is
+/// level meets the piece where y(v) is its height, of degree 3, and then a circle. Whether the ray is inside
+/// of the circle where two pieces meet is decided once, by numbers that both have in common.
 
 #include "kernels/exact/lathe_data.h"
+#include "kernels/exact/line_columns.h"
 #include "kernels/exact/ray_polynomial.h"
 
 namespace oktett {
@@ -14,6 +15,7 @@ namespace oktett {
 struct LatheElement {
   struct Piece {
     double r[4], y[4];                 ///< in powers of v, -1 <= v <= 1
+    int degree;                        ///< of both
     double radius[2], height[2];       ///< at -1 and 1
     bool cap[2];                       ///< whether a disk closes that end
     double least_y, greatest_y, most;  ///< bounds of y and r
@@ -50,23 +52,20 @@ struct Lathe {
     substitute(piece, segment, c);
     const auto shallow = abs(line.d.y) <= D(kShallow) * sqrt(dd);
     // A disk may be met without the surface.
-    const auto settled = no_sign_change(c, 6) & ~shallow;
+    const auto settled = no_sign_change(c, 2 * piece.degree) & ~shallow;
     const unsigned doubtful = bits(there & ~settled),
                    lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
     if (lanes == 0) return;
-    double ray[6][W], a[W], b[W], columns[7][W], begins[W];
-    const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
-    for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
+    const LineColumns<D> rays(line, range);
+    double columns[7][W];
     for (int i = 0; i < 7; ++i) c[i].store(columns[i]);
-    range.a.store(a), range.b.store(b);
-    select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
     CrossingColumns<K, D> lists(out);
     for (int i = 0; i < W; ++i) {
       if (!(lanes >> i & 1)) continue;
       OneRay one;
-      for (int k = 0; k < 6; ++k) one.line[k] = ray[k][i];
+      for (int k = 0; k < 3; ++k) one.line[k] = rays.o(i)[k], one.line[3 + k] = rays.d(i)[k];
       for (int k = 0; k < 7; ++k) one.c[k] = columns[k][i];
-      one.a = a[i], one.b = b[i], one.begin = begins[i];
+      one.a = rays.a(i), one.b = rays.b(i), one.begin = rays.begin(i);
       one.on_surface = doubtful >> i & 1;
       Found found;
       find(e, piece, one, found);
