@@ -47,7 +47,7 @@ foreach(set IN LISTS OKTETT_SETS)
 endforeach()
 # Only these files depend on the list, so that a build folder can get more sets without compiling anything twice.
 set_source_files_properties(
-  ${PROJECT_SOURCE_DIR}/core/isa.cpp ${PROJECT_SOURCE_DIR}/accel/isa_tables.cpp
+  ${PROJECT_SOURCE_DIR}/core/isa.cpp ${PROJECT_SOURCE_DIR}/core/isa_tables.cpp ${PROJECT_SOURCE_DIR}/accel/isa_tables.cpp
   ${PROJECT_SOURCE_DIR}/render/isa_tables.cpp ${PROJECT_SOURCE_DIR}/verify/isa_tables.cpp
   PROPERTIES COMPILE_DEFINITIONS "${oktett_with}")
 

@@ -45,7 +45,7 @@ set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_OPTIONS ${OKT
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp
   PROPERTIES COMPILE_OPTIONS "-O2;-fno-tree-vectorize;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>")
 include(cmake/instruction_sets.cmake)
-file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
+file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS core/isa/*.cpp accel/isa/*.cpp render/isa/*.cpp)
 oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES})
 
 include(cmake/io_libraries.cmake)

@@ -15,13 +15,18 @@ namespace {
 /// Noise of all octaves, in [-1, 1].
 double turbulence(const Turbulence& t, Vec3d p) {
   double sum = 0, total = 0, weight = 1;
-  for (std::uint32_t octave = 0; octave < t.octaves; ++octave) {
-    sum += weight * gradient_noise(p);
-    total += weight;
-    weight *= t.roughness;
-    // Moved by a half, so that the zeros of the octaves do not fall together.
-    p = p * 2 + Vec3d{0.5, 0.5, 0.5};
-  }
+  for_each_octave<1>(
+      t.octaves,
+      [&](Vec3d(&place)[1]) {
+        place[0] = p;
+        // Moved by a half, so that the zeros of the octaves do not fall together.
+        p = p * 2 + Vec3d{0.5, 0.5, 0.5};
+      },
+      [&](const double(&noise)[1]) {
+        sum += weight * noise[0];
+        total += weight;
+        weight *= t.roughness;
+      });
   return sum / total;
 }
 

@@ -131,8 +131,9 @@ double raw_value(const DentsPattern&, const Vec3d& p, const PatternFrame&) {
 
 double raw_value(const GranitePattern&, const Vec3d& p, const PatternFrame&) {
   double sum = 0, scale = 4, weight = 1;
-  for (int octave = 0; octave < 6; ++octave, scale *= 2, weight *= 0.5)
-    sum += weight * std::abs(gradient_noise(p * scale));
+  for_each_octave<1>(
+      6, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
+      [&](const double(&noise)[1]) { sum += weight * std::abs(noise[0]), weight *= 0.5; });
   return std::min(sum, 1.0);
 }
 
@@ -154,8 +155,9 @@ double raw_value(const HexagonPattern&, const Vec3d& p, const PatternFrame&) {
 
 double raw_value(const WrinklesPattern&, const Vec3d& p, const PatternFrame&) {
   double sum = 0, scale = 1, weight = 0.5;
-  for (int octave = 0; octave < 10; ++octave, scale *= 2, weight *= 0.5)
-    sum += weight * steep_noise(p * scale);
+  for_each_octave<1>(
+      10, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
+      [&](const double(&noise)[1]) { sum += weight * steep_noise(noise[0]), weight *= 0.5; });
   return sum;
 }
 

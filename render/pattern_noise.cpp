@@ -1,15 +1,18 @@
 #include "render/pattern_noise.h"
 
-#include <algorithm>
+#include "core/noise_places.h"
 
 namespace oktett {
 
-Vec3d vector_noise(const Vec3d& p) {
+void vector_noise_places(const Vec3d& p, Vec3d (&places)[3]) {
   // Far from each other, and beside the lattice by different parts.
-  return {gradient_noise(p + Vec3d{0.37, 0.71, 0.23}), gradient_noise(p + Vec3d{57.61, 13.19, 91.43}),
-          gradient_noise(p + Vec3d{-31.29, 77.53, -43.83})};
+  places[0] = p + Vec3d{0.37, 0.71, 0.23}, places[1] = p + Vec3d{57.61, 13.19, 91.43};
+  places[2] = p + Vec3d{-31.29, 77.53, -43.83};
 }
 
-double steep_noise(const Vec3d& p) { return std::clamp(0.5 + gradient_noise(p), 0.0, 1.0); }
+void noise_at(const Vec3d* places, std::size_t count, double* values) {
+  static const NoiseAtPlaces code = noise_at_places(default_isa());
+  code(places, count, values);
+}
 
 }  // namespace oktett

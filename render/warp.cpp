@@ -75,19 +75,24 @@ Vec3d displaced(const PatternTurbulence& t, const Vec3d& p) {
   if (t.amount == Vec3d{0, 0, 0}) return p;
   Vec3d sum{0, 0, 0};
   double scale = 1, weight = 1;
-  for (std::uint32_t octave = 0; octave < t.octaves; ++octave) {
-    sum += vector_noise(p * scale) * weight;
-    scale *= t.lambda, weight *= t.omega;
-  }
+  for_each_octave<3>(
+      t.octaves,
+      [&](Vec3d(&places)[3]) {
+        vector_noise_places(p * scale, places);
+        scale *= t.lambda;
+      },
+      [&](const double(&noise)[3]) {
+        sum += Vec3d{noise[0], noise[1], noise[2]} * weight;
+        weight *= t.omega;
+      });
   return p + sum * t.amount;
 }
 
 double value_turbulence(const PatternTurbulence& t, const Vec3d& p) {
   double sum = 0, scale = 1, weight = 1;
-  for (std::uint32_t octave = 0; octave < t.octaves; ++octave) {
-    sum += steep_noise(p * scale) * weight;
-    scale *= t.lambda, weight *= t.omega;
-  }
+  for_each_octave<1>(
+      t.octaves, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= t.lambda; },
+      [&](const double(&noise)[1]) { sum += steep_noise(noise[0]) * weight, weight *= t.omega; });
   return sum;
 }
 

@@ -9,6 +9,8 @@ file(GLOB sources CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/off/*.cpp ${PROJECT_SOURCE_DIR}/io/threemf/*.cpp
   ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp ${PROJECT_SOURCE_DIR}/io/pov/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/(write|glb)_[a-z_]*\\.cpp$")
+# Code of instruction sets is not among them.
+list(FILTER sources EXCLUDE REGEX "/core/isa_tables\\.cpp$")
 add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp ${PROJECT_SOURCE_DIR}/render/pattern_kinds.cpp
   ${PROJECT_SOURCE_DIR}/io/image/color.cpp
   ${PROJECT_SOURCE_DIR}/kernels/functions/expression.cpp

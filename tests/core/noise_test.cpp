@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
+#include "core/noise_places.h"
 #include "verify/oracles/exact_noise.h"
 
 namespace oktett::noise_test {
@@ -24,6 +27,30 @@ double coordinate(std::mt19937& random) {
       return x * 0x1p20;
     default:
       return x;
+  }
+}
+
+TEST(Noise, SeveralPlacesHaveTheSameBitsInAllSets) {
+  const double inf = std::numeric_limits<double>::infinity();
+  std::vector<Vec3d> places = {{0, 0, 0},          {-0.0, 1, -1},           {1e18, 0.5, 0},
+                               {-3, -7.5, 0x1p51}, {0x1.8p50, 0, 0.3},      {-1e-300, 5e-324, -0.25},
+                               {0.5, inf, 0.5},    {std::nan(""), 0.5, 0.5}};
+  std::mt19937 random(2);
+  while (places.size() < 20000)
+    places.push_back({coordinate(random), coordinate(random), coordinate(random)});
+  for (const Isa isa : available_isas()) {
+    SCOPED_TRACE(to_string(isa));
+    const NoiseAtPlaces code = noise_at_places(isa);
+    // Of all lengths, so that the last ones are not as many as are taken at once.
+    for (std::size_t begin = 0, count = 0; begin < places.size(); begin += count) {
+      count = std::min<std::size_t>(1 + random() % 20, places.size() - begin);
+      std::vector<double> values(count, 7);
+      code(&places[begin], count, values.data());
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(values[i]),
+                  std::bit_cast<std::uint64_t>(gradient_noise(places[begin + i])))
+            << begin + i;
+    }
   }
 }
 
