@@ -2,6 +2,7 @@
 /// \file Files that a scene opens with #fopen: text that it reads value by value, or writes.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 

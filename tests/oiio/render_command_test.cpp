@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
