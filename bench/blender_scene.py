@@ -12,28 +12,36 @@ import sys
 import time
 
 import bpy
+import numpy as np
 
 
-def load_triangles(path, slots):
-    """Vertices, triangles and the material slot of each triangle of an OBJ file."""
-    vertices, triangles, materials, slot = [], [], [], 0
-    with open(path) as lines:
-        for line in lines:
-            words = line.split()
-            if not words:
-                continue
-            if words[0] == "v":
-                x, y, z = map(float, words[1:4])
-                vertices.append((x, -z, y))  # Blender's z is up
-            elif words[0] == "usemtl":
-                slot = slots[words[1]]
-            elif words[0] == "f":
-                triangles.append([int(word) - 1 for word in words[1:4]])
-                materials.append(slot)
-    return vertices, triangles, materials
+def load_mesh(directory):
+    """The mesh whose columns are in the directory, in Blender's axes, with flat triangles."""
+    def column(name, kind):
+        return np.fromfile(os.path.join(directory, name), kind)
+
+    positions = column("positions.f32", np.float32).reshape(-1, 3)
+    indices, slots = column("indices.u32", np.int32), column("slots.u16", np.uint16)
+    count = len(indices) // 3
+    mesh = bpy.data.meshes.new("scene")
+    mesh.vertices.add(len(positions))
+    mesh.vertices.foreach_set("co", (positions[:, [0, 2, 1]] * np.float32([1, -1, 1])).ravel())  # Blender's z is up
+    mesh.loops.add(3 * count)
+    mesh.loops.foreach_set("vertex_index", indices)
+    mesh.polygons.add(count)
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, np.int32))
+    if bpy.app.version < (4, 1, 0):
+        mesh.polygons.foreach_set("loop_total", np.full(count, 3, np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.zeros(count, bool))
+    if os.path.exists(os.path.join(directory, "uvs.f32")):
+        uvs = column("uvs.f32", np.float32).reshape(-1, 2)
+        mesh.uv_layers.new().data.foreach_set("uv", uvs[indices].ravel())
+    mesh.update(calc_edges=True)
+    mesh.polygons.foreach_set("material_index", slots.astype(np.int32))
+    return mesh
 
 
-def make_material(description):
+def make_material(description, directory):
     material = bpy.data.materials.new(description["name"])
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
@@ -57,6 +65,10 @@ def make_material(description):
     else:
         shader = nodes.new("ShaderNodeBsdfDiffuse")
     shader.inputs["Color"].default_value = color
+    if description["texture"]:
+        picture = nodes.new("ShaderNodeTexImage")
+        picture.image = bpy.data.images.load(os.path.join(directory, "texture_%s.png" % description["name"]))
+        links.new(picture.outputs["Color"], shader.inputs["Color"])
     links.new(shader.outputs[0], output.inputs["Surface"])
     return material
 
@@ -133,14 +145,9 @@ def main():
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     configure(scene, description, seed)
-    names = {material["name"]: i for i, material in enumerate(description["materials"])}
-    vertices, triangles, slots = load_triangles(os.path.join(directory, "scene.obj"), names)
-    mesh = bpy.data.meshes.new("scene")
-    mesh.from_pydata(vertices, [], triangles)
+    mesh = load_mesh(directory)
     for material in description["materials"]:
-        mesh.materials.append(make_material(material))
-    mesh.polygons.foreach_set("material_index", slots)
-    mesh.update()
+        mesh.materials.append(make_material(material, directory))
     scene.collection.objects.link(bpy.data.objects.new("scene", mesh))
     make_camera(scene, description["camera"])
     make_world(scene, directory, description)

@@ -17,6 +17,7 @@
 #include "bench/program.h"
 #include "core/color.h"
 #include "io/image/image.h"
+#include "io/image/texture.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/text/file_content.h"
 #include "render/picture/render.h"
@@ -130,8 +131,11 @@ struct Traced {
   double seconds = 0;
 };
 
-Traced trace(Scene scene, std::uint32_t samples, std::uint32_t seed, const Options& o) {
+/// `textures` are those of the scene. They read a picture when it is first asked for.
+Traced trace(Scene scene, const ImageTextures& textures, std::uint32_t samples, std::uint32_t seed,
+             const Options& o) {
   RenderOptions options;
+  options.textures = &textures;
   options.threads = static_cast<unsigned>(o.threads), options.data_layers = false;
   scene.integrator.samples = samples, scene.integrator.seed = seed;
   RenderResult result = render(std::move(scene), options);
@@ -175,12 +179,14 @@ struct CyclesRow {
 };
 
 CyclesRow against_cycles(const PathScene& scene, const fs::path& dir, const Options& o) {
-  const Scene here = oktett_scene(scene, o.width, o.height);
+  const Scene here = oktett_scene(scene, o.width, o.height, dir.string());
+  // The long picture has them read all, as the time of Cycles' few samples is subtracted.
+  const ImageTextures textures(here.textures);
   const auto picture = [&](std::uint32_t samples) {
     return pixels_of(read_image((dir / fmt::format("cycles_{}.exr", samples)).string()));
   };
   CyclesRow row;
-  const Picture long_picture = trace(here, o.long_samples, kLongSeed, o).picture;
+  const Picture long_picture = trace(here, textures, o.long_samples, kLongSeed, o).picture;
   write_image((dir / fmt::format("oktett_{}.exr", o.long_samples)).string(), long_picture);
   const Pixels our_long = pixels_of(long_picture);
   run_cycles(dir, o.long_samples, kLongSeed, o);
@@ -195,7 +201,7 @@ CyclesRow against_cycles(const PathScene& scene, const fs::path& dir, const Opti
   });
   std::vector<double> ours, theirs;
   for (int run = 0; run < o.runs; ++run) {
-    const Traced traced = trace(here, o.samples, 0, o);
+    const Traced traced = trace(here, textures, o.samples, 0, o);
     ours.push_back(traced.seconds);
     row.our_error = relative_error(pixels_of(traced.picture), our_long, o);
     theirs.push_back(run_cycles(dir, o.samples, 0, o));
@@ -222,7 +228,8 @@ struct EmbreeRow {
 EmbreeRow against_embree(const PathScene& scene, const fs::path& dir, const Options& o) {
   constexpr std::uint32_t kWidth = 960, kHeight = 540, kSamples = 8;
   constexpr int kFrames = 3;
-  const Scene here = oktett_scene(scene, kWidth, kHeight);
+  const Scene here = oktett_scene(scene, kWidth, kHeight, dir.string());
+  const ImageTextures textures(here.textures);
   const std::string log = (dir / "embree.log").string();
   const Camera& c = scene.camera;
   const std::string command = fmt::format(
@@ -233,7 +240,7 @@ EmbreeRow against_embree(const PathScene& scene, const fs::path& dir, const Opti
   std::vector<double> ours, theirs, ratio;
   for (int run = 0; run < o.runs; ++run) {
     const double samples = 1e-6 * kWidth * kHeight * kSamples;
-    ours.push_back(kFrames * samples / trace(here, kSamples * kFrames, 0, o).seconds);
+    ours.push_back(kFrames * samples / trace(here, textures, kSamples * kFrames, 0, o).seconds);
     run_command(command, log);
     theirs.push_back(samples * number_after(log, "BENCHMARK_RENDER_AVG "));
     ratio.push_back(ours.back() / theirs.back());
@@ -264,10 +271,11 @@ Options parse(int argc, char** argv) {
       {"--no-cycles", "", "Embree's pathtracer alone", [&](Text) { o.cycles = false; }},
       {"--json", "FILE", "all figures", [&](Text v) { o.json = v; }},
       {"--keep", "DIR", "leave scenes and pictures there", [&](Text v) { o.keep = v; }}};
-  o.scenes = parse_options(
-      argc, argv,
-      "usage: path_peers [option]... [SCENE]...\n  SCENE                    of those for Cycles; all",
-      options);
+  o.scenes =
+      parse_options(argc, argv,
+                    "usage: path_peers [option]... [SCENE]...\n"
+                    "  SCENE                    of those for Cycles; all but `textures`, which takes 5 GB",
+                    options);
   return o;
 }
 
@@ -296,7 +304,6 @@ void compare_cycles(const std::vector<PathScene>& scenes, const fs::path& dir, c
   fmt::print("{:<12}{:>9}{:>9}{:>11}{:>11}{:>8}{:>9}{:>9}{:>9}{:>9}{:>7}\n", "scene", "Oktett", "Cycles",
              "error", "error", "ratio", "median", "90 %", "most", "whole", "again");
   for (const PathScene& scene : scenes) {
-    if (!o.scenes.empty() && std::ranges::find(o.scenes, scene.name) == o.scenes.end()) continue;
     const fs::path place = dir / scene.name;
     fs::create_directories(place);
     write_path_scene(scene, o.width, o.height, place.string());
@@ -317,7 +324,13 @@ int run(int argc, char** argv) {
                            : fs::path(o.keep);
   fs::create_directories(dir);
   const TriangleMesh model = fs::exists(o.mesh) ? load_mesh(o.mesh).mesh : bench_mesh();
-  const std::vector<PathScene> scenes = path_scenes(model);
+  std::vector<PathScene> scenes = path_scenes(model);
+  const auto chosen = [&](const std::string& name) {
+    return std::ranges::find(o.scenes, name) != o.scenes.end();
+  };
+  const PathScene open = open_scene(*std::ranges::find(scenes, "environment", &PathScene::name));
+  if (!o.scenes.empty()) std::erase_if(scenes, [&](const PathScene& s) { return !chosen(s.name); });
+  if (chosen("textures")) scenes.push_back(textured_scene());
   std::vector<std::string> json;
   if (o.cycles && !has_program("blender"))
     fmt::print("there is no blender; scripts/setup --bench installs it\n");
@@ -326,11 +339,10 @@ int run(int argc, char** argv) {
   if (o.embree && !has_program("pathtracer")) {
     fmt::print("there is no pathtracer; scripts/setup --bench installs it\n");
   } else if (o.embree) {
-    const PathScene scene = open_scene(*std::ranges::find(scenes, "environment", &PathScene::name));
-    const fs::path place = dir / scene.name;
+    const fs::path place = dir / open.name;
     fs::create_directories(place);
-    write_path_scene(scene, 960, 540, place.string());
-    const EmbreeRow r = against_embree(scene, place, o);
+    write_path_scene(open, 960, 540, place.string());
+    const EmbreeRow r = against_embree(open, place, o);
     fmt::print("Embree's pathtracer: {:.2f} Msamples/s, Oktett {:.2f}, ratio {:.2f} ({:.2f} to {:.2f})\n",
                r.theirs.median, r.ours.median, r.ratio.median, r.ratio.low, r.ratio.high);
     json.push_back(fmt::format(

@@ -31,6 +31,28 @@ class MeshMaker {
     mesh_.material_slots.push_back(material), mesh_.material_slots.push_back(material);
   }
 
+  /// A hill of `edge` x `edge` squares about `middle`, `size` wide, with uv from 0 to 1.
+  void hill(const Vec3f& middle, float size, std::uint32_t edge, float phase, std::uint16_t material) {
+    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+    for (std::uint32_t j = 0; j <= edge; ++j)
+      for (std::uint32_t i = 0; i <= edge; ++i) {
+        const Vec2f uv{static_cast<float>(i) / static_cast<float>(edge),
+                       static_cast<float>(j) / static_cast<float>(edge)};
+        const float x = uv.x - 0.5f, z = 0.5f - uv.y;
+        const float wide = std::cos(3 * x) * std::cos(3 * z),
+                    ripples = std::sin(40 * x + phase) * std::sin(37 * z);
+        mesh_.positions.push_back(middle + Vec3f{x, 0.35f * wide + 0.02f * ripples, z} * size);
+        mesh_.uvs.push_back(uv);
+      }
+    for (std::uint32_t j = 0; j < edge; ++j)
+      for (std::uint32_t i = 0; i < edge; ++i) {
+        const std::uint32_t a = first + j * (edge + 1) + i, b = a + edge + 1;
+        for (const std::uint32_t corner : {a, a + 1, b + 1, a, b + 1, b})
+          mesh_.indices.push_back(corner), mesh_.uv_indices.push_back(corner);
+        for (int k = 0; k < 2; ++k) mesh_.material_slots.push_back(material);
+      }
+  }
+
   /// Stands on `foot`, and its longest side has length `size`.
   void model(const TriangleMesh& model, const Vec3f& foot, float size, std::uint16_t material) {
     Box box;
@@ -125,6 +147,34 @@ PathScene lamps(const TriangleMesh& model) {
   return s;
 }
 
+/// Coloured blocks of 2, 16 and 128 pixels, drawn by chance.
+void write_texture(std::uint32_t edge, std::uint32_t seed, const std::string& path) {
+  Picture picture;
+  picture.width = picture.full_width = edge, picture.height = picture.full_height = edge;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    PicturePlane plane;
+    plane.name = std::string(1, "RGB"[k]), plane.type = PlaneType::single_float;
+    for (std::uint32_t y = 0; y < edge; ++y)
+      for (std::uint32_t x = 0; x < edge; ++x) {
+        float sum = 0.1f;
+        for (const std::uint32_t block : {2u, 16u, 128u})
+          sum += 0.25f * random_float(pixel_key(seed, std::uint64_t{y / block} * edge + x / block), k, block);
+        plane.values.push_back(sum);
+      }
+    picture.planes.push_back(std::move(plane));
+  }
+  write_image(path, picture);
+}
+
+std::string texture_path(const std::string& directory, const PathMaterial& m) {
+  return fmt::format("{}/texture_{}.png", directory, m.name);
+}
+
+template <class T>
+void write_column(const Column<T>& column, const std::string& path) {
+  write_text(path, std::string(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(T)));
+}
+
 std::string numbers(const auto& v) { return fmt::format("{:.9g}, {:.9g}, {:.9g}", v.x, v.y, v.z); }
 
 std::string mtl_of(const PathScene& scene) {
@@ -157,9 +207,9 @@ std::string json_of(const PathScene& scene, std::uint32_t width, std::uint32_t h
   for (const PathMaterial& m : scene.materials)
     materials += fmt::format(
         "{}\n    {{\"name\": \"{}\", \"kind\": \"{}\", \"color\": [{}], \"roughness\": {:.9g}, \"ior\": "
-        "{:.9g}}}",
+        "{:.9g}, \"texture\": {}}}",
         materials.empty() ? "" : ",", m.name, kKinds[static_cast<int>(m.kind)], numbers(m.color), m.roughness,
-        m.ior);
+        m.ior, m.texture);
   return fmt::format(
       "{{\n  \"size\": [{}, {}], \"depth\": {}, \"background\": [{}], \"environment\": {},\n"
       "  \"camera\": {{\"from\": [{}], \"at\": [{}], \"fov\": {}}},\n  \"materials\": [{}]\n}}\n",
@@ -209,7 +259,23 @@ std::vector<PathScene> path_scenes(const TriangleMesh& model) {
   return scenes;
 }
 
-Scene oktett_scene(const PathScene& scene, std::uint32_t width, std::uint32_t height) {
+PathScene textured_scene() {
+  PathScene s;
+  s.name = "textures";
+  MeshMaker make(s.mesh);
+  for (std::uint16_t i = 0; i < 10; ++i) {
+    PathMaterial material = diffuse("", {1, 1, 1});
+    material.name = fmt::format("hill{}", i), material.texture = 4096;
+    s.materials.push_back(material);
+    make.hill({static_cast<float>(i % 4) - 1.5f, 0, -static_cast<float>(i / 4)}, 1, 708, i, i);
+  }
+  s.camera.from = {0.3, 1.6, 2.6}, s.camera.at = {0, 0.1, -0.8}, s.camera.fov = 40;
+  s.environment = sunny_picture();
+  return s;
+}
+
+Scene oktett_scene(const PathScene& scene, std::uint32_t width, std::uint32_t height,
+                   const std::string& directory) {
   Scene out;
   out.camera = scene.camera, out.camera_given = true;
   out.film.width = width, out.film.height = height;
@@ -221,6 +287,9 @@ Scene oktett_scene(const PathScene& scene, std::uint32_t width, std::uint32_t he
   for (const PathMaterial& m : scene.materials) {
     shape.slot_materials.push_back(static_cast<std::uint32_t>(out.materials.size()));
     out.materials.push_back(oktett_material(m));
+    if (m.texture == 0) continue;
+    out.materials.back().color_texture = static_cast<std::uint32_t>(out.textures.size());
+    out.textures.emplace_back().path = texture_path(directory, m);
   }
   Object object;
   object.shape = std::move(shape);
@@ -232,9 +301,19 @@ Scene oktett_scene(const PathScene& scene, std::uint32_t width, std::uint32_t he
 
 void write_path_scene(const PathScene& scene, std::uint32_t width, std::uint32_t height,
                       const std::string& directory) {
-  write_text(directory + "/scene.obj", obj_of(scene));
-  write_text(directory + "/scene.mtl", mtl_of(scene));
+  const TriangleMesh& mesh = scene.mesh;
+  if (mesh.uvs.empty()) {
+    write_text(directory + "/scene.obj", obj_of(scene));
+    write_text(directory + "/scene.mtl", mtl_of(scene));
+  }
   write_text(directory + "/scene.json", json_of(scene, width, height));
+  write_column(mesh.positions, directory + "/positions.f32");
+  write_column(mesh.indices, directory + "/indices.u32");
+  write_column(mesh.material_slots, directory + "/slots.u16");
+  if (!mesh.uvs.empty()) write_column(mesh.uvs, directory + "/uvs.f32");
+  for (std::uint32_t i = 0; i < scene.materials.size(); ++i)
+    if (const PathMaterial& m = scene.materials[i]; m.texture != 0)
+      write_texture(m.texture, i, texture_path(directory, m));
   if (scene.environment) write_environment(*scene.environment, directory + "/environment.exr");
 }
 
