@@ -1,0 +1,20 @@
+#pragma once
+/// \file Meshes of shapes that are made of triangles, or nearly. Within io/ only.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/mesh.h"
+#include "render/scene.h"
+
+namespace oktett {
+
+/// What messages call a shape, such as "torus".
+std::string shape_name(const Shape& shape);
+
+/// The mesh of a triangle, a box, a disk, whose circles become polygons of `around` corners on them, or a
+/// polygon without holes, in the shape's own space, with normals; nothing for all others.
+std::optional<TriangleMesh> plain_mesh(const Shape& shape, std::uint32_t around);
+
+}  // namespace oktett
