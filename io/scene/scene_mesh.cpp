@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -26,6 +28,9 @@ namespace {
 constexpr std::size_t kMostPlacements = 50'000'000;
 /// Memory that a triangle takes on the way to a file, with its share of vertices.
 constexpr std::uint64_t kBytesOfTriangle = 160;
+
+/// Where refining begins.
+constexpr std::uint32_t kFirstCells = 16;
 
 /// A place of an object.
 struct ObjectPlace {
@@ -184,14 +189,22 @@ class SceneMeshing {
 
   template <class T>
   ObjectMesh convert(const T& shape, const Object& object, double scale) {
-    const std::uint32_t around = round_segments(scale);
+    // Of a circle; as many corners as keep its polygon within the tolerance.
+    const double off = options_.tolerance > 0 ? options_.tolerance / (scale * radius_of(shape)) : 0;
+    const double least = off > 0 ? std::numbers::pi / std::acos(1 - std::min(off, 1.0)) : 3.0 * options_.resolution;
+    const auto around = static_cast<std::uint32_t>(std::clamp(std::ceil(least), 16.0, 1e5));
     if (std::optional<TriangleMesh> mesh = plain_mesh(Shape(shape), around))
       return {std::make_shared<TriangleMesh>(std::move(*mesh)), {object.material}, {}};
     return sampled(object, scale);
   }
 
-  /// Corners of a circle.
-  std::uint32_t round_segments(double) const { return std::max<std::uint32_t>(16, 3 * options_.resolution); }
+  template <class T>
+  static double radius_of(const T& shape) {
+    if constexpr (std::is_same_v<T, DiskShape>)
+      return shape.radius;
+    else
+      return 1;
+  }
 
   ObjectMesh sampled(const Object& object, double scale) {
     // The object alone, first in its own space, then so that it is about 2 in size.
@@ -218,31 +231,26 @@ class SceneMeshing {
           Affine::scaling(stretched * (2 / size)) * Affine::translation(-Vec3d(box.center()));
     }
     if (!only.transform.is_invertible()) return {};
-    const World world = build_world(alone);
     ObjectMesh made;
     made.to_shape = only.transform.inverse();
     const double to_world = scale * max_component(stretch(made.to_shape));
-    Contour found = refined(object, *world.accel, is_solid(object.shape, scene_.prototypes), to_world);
-    found.mesh.material_slots = slots_of(found.users, world, made.slots);
-    made.mesh = std::make_shared<TriangleMesh>(std::move(found.mesh));
-    return made;
-  }
-
-  /// The contour with as many cells as the options ask for; `to_world`: how much longer lengths become.
-  Contour refined(const Object& object, const Accel& accel, bool closed, double to_world) {
-    ContourOptions options{options_.resolution, closed};
-    if (options_.tolerance == 0) return contour(accel, options);
-    for (options.cells = 16;;) {
-      Contour made = contour(accel, options);
-      const double error = made.deviation * to_world;
-      if (error <= options_.tolerance) return made;
-      if (options.cells == kMostMeshCells) {
-        warn(object, fmt::format("is off by up to {:.2g}", error));
+    std::uint32_t cells = options_.tolerance > 0 ? kFirstCells : options_.resolution;
+    for (;;) {
+      only.shape = object.shape;
+      leave_out_details(only.shape, cells);
+      const World world = build_world(alone);
+      Contour found = contour(*world.accel, {cells, is_solid(object.shape, scene_.prototypes)});
+      const double error = found.deviation * to_world;
+      if (options_.tolerance == 0 || error <= options_.tolerance || cells == kMostMeshCells) {
+        if (options_.tolerance > 0 && error > options_.tolerance)
+          warn(object, fmt::format("is off by up to {:.2g}", error));
+        found.mesh.material_slots = slots_of(found.users, world, made.slots);
+        made.mesh = std::make_shared<TriangleMesh>(std::move(found.mesh));
         return made;
       }
       // The error falls with the square of the size of cells, at edges more slowly.
       const double factor = std::clamp(1.1 * std::sqrt(error / options_.tolerance), 1.25, 4.0);
-      options.cells = std::min(kMostMeshCells, static_cast<std::uint32_t>(std::ceil(options.cells * factor)));
+      cells = std::min(kMostMeshCells, static_cast<std::uint32_t>(std::ceil(cells * factor)));
     }
   }
 

@@ -24,9 +24,10 @@ struct SceneMeshOptions {
 };
 
 /// All objects of a scene at time 0, in its coordinates. Meshes and triangles are as they are, boxes, disks
-/// and polygons without holes become triangles, all other shapes contours (io/mesh/contour/contour.h).
-/// Instances are flattened. What has no end, points and lines, and what is not to be seen at all is left out
-/// with a warning that names it. Materials are those of the scene; textures that are not laid over uv do not
+/// and polygons without holes become triangles, all other shapes contours (io/mesh/contour/contour.h), of
+/// fractals without what is smaller than a cell.
+/// Instances are flattened. What has no end, and points and lines, are left out with a warning that names
+/// them. Materials are those of the scene; textures that are not laid over uv do not
 /// fit. Throws Error if no object has the selected name, or there is no room for all.
 MeshFile mesh_of_scene(const Scene& scene, const SceneMeshOptions& options = {});
 

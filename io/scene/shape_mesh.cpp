@@ -1,8 +1,12 @@
 #include "io/scene/shape_mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -131,6 +135,31 @@ std::optional<TriangleMesh> plain_mesh(const Shape& shape, std::uint32_t around)
   const auto* const polygon = std::get_if<PolygonShape>(&shape);
   if (polygon != nullptr && polygon->holes.empty()) return mesh_of(*polygon);
   return std::nullopt;
+}
+
+void leave_out_details(Shape& shape, std::uint32_t cells) {
+  if (auto* const csg = std::get_if<CsgShape>(&shape)) {
+    auto operands = std::make_shared<std::vector<Object>>(*csg->operands);
+    for (Object& operand : *operands) leave_out_details(operand.shape, cells);
+    csg->operands = std::move(operands);
+    return;
+  }
+  auto* const exact = std::get_if<ExactShape>(&shape);
+  if (exact == nullptr) return;
+  // Generations until one, each `ratio` of the size of that before, is less than a cell.
+  const auto generations = [&](double ratio) {
+    return static_cast<std::uint32_t>(std::ceil(std::log(static_cast<double>(cells)) / std::log(1 / ratio)));
+  };
+  std::visit(
+      [&](auto& form) {
+        using Form = std::remove_cvref_t<decltype(form)>;
+        if constexpr (std::is_same_v<Form, MengerShape>) form.depth = std::min(form.depth, generations(1.0 / 3));
+        if constexpr (std::is_same_v<Form, SphereflakeShape>)
+          form.depth = std::min(form.depth, generations(form.ratio));
+        if constexpr (std::is_same_v<Form, TerrainShape>) form.depth = std::min(form.depth, generations(0.5) + 1);
+        if constexpr (std::is_same_v<Form, IfsShape>) form.least = std::max(form.least, 1.0 / cells);
+      },
+      exact->form);
 }
 
 }  // namespace oktett

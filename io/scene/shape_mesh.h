@@ -17,4 +17,8 @@ std::string shape_name(const Shape& shape);
 /// polygon without holes, in the shape's own space, with normals; nothing for all others.
 std::optional<TriangleMesh> plain_mesh(const Shape& shape, std::uint32_t around);
 
+/// Leaves out what is smaller than a cell of a grid with `cells` along the shape: the last generations of
+/// fractals, of operands of combinations, too.
+void leave_out_details(Shape& shape, std::uint32_t cells);
+
 }  // namespace oktett

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/mesh/contour/grid.h"
 #include "io/mesh/contour/links.h"
+#include "io/mesh/contour/rims.h"
 #include "io/mesh/contour/sheets.h"
 #include "io/mesh/contour/signs.h"
 
@@ -45,8 +47,13 @@ struct Patch {
 class Meshing {
  public:
   Meshing(const ContourGrid& grid, const ContourCrossings& crossings, const std::vector<SlotNumber>& links,
-          const ContourSheets& sheets, std::vector<SheetVertex>& vertices)
-      : grid_(grid), crossings_(crossings), links_(links), sheets_(sheets), vertices_(vertices) {}
+          const ContourSheets& sheets, const std::vector<RimPoint>& rims, std::vector<SheetVertex>& vertices)
+      : grid_(grid),
+        crossings_(crossings),
+        links_(links),
+        sheets_(sheets),
+        rims_(rims),
+        vertices_(vertices) {}
 
   Contour run() {
     split_double_links();
@@ -61,7 +68,9 @@ class Meshing {
       const auto i = static_cast<std::uint32_t>(x);
       if (has_twins(i)) patches[x] = patch_of_twin(i, patches);
     }
-    return gather(patches);
+    Contour made = gather(patches);
+    add_rims(made);
+    return made;
   }
 
  private:
@@ -109,14 +118,15 @@ class Meshing {
            crossings_.all[x].place == crossings_.all[y].place;
   }
 
+  // Seen against the axis, the cells around an edge in order, and the faces between one and the next.
+  static constexpr std::uint32_t kQuadrants[] = {0, 2, 3, 1}, kFaces[] = {0, 3, 1, 2};
+
   std::uint32_t sheet(std::uint32_t x, std::uint32_t quadrant) const {
     return sheets_.of_quadrant[kSlots * x + quadrant];
   }
 
-  /// The outline of the quad, counter-clockwise from the front. Seen against the axis, the cells around an
-  /// edge are quadrants 0, 2, 3, 1, and the faces between them slots 0, 3, 1 and 2.
+  /// The outline of the quad, counter-clockwise from the front.
   std::vector<std::uint32_t> outline(std::uint32_t x) const {
-    constexpr std::uint32_t kQuadrants[] = {0, 2, 3, 1}, kFaces[] = {0, 3, 1, 2};
     std::vector<std::uint32_t> corners;
     for (std::size_t k = 0; k < 4; ++k) {
       corners.push_back(sheet(x, kQuadrants[k]));
@@ -187,13 +197,13 @@ class Meshing {
     return patch(x, 2);
   }
 
-  Contour gather(const std::vector<Patch>& patches) const {
+  Contour gather(const std::vector<Patch>& patches) {
     Contour made;
     TriangleMesh& mesh = made.mesh;
-    std::vector<std::uint32_t> normals_from(vertices_.size());
+    normals_from_.resize(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       mesh.positions.push_back(Vec3f(vertices_[i].position));
-      normals_from[i] = static_cast<std::uint32_t>(mesh.normals.size());
+      normals_from_[i] = static_cast<std::uint32_t>(mesh.normals.size());
       for (std::uint32_t k = 0; k < vertices_[i].smooth_parts; ++k) mesh.normals.push_back(vertices_[i].normals[k]);
     }
     for (std::uint32_t x = 0; x < patches.size(); ++x) {
@@ -211,12 +221,53 @@ class Meshing {
         for (const std::uint32_t v : patch.triangles[t]) {
           const bool is_middle = v >= vertices_.size();
           mesh.indices.push_back(is_middle ? middle : v);
-          mesh.normal_indices.push_back(is_middle ? middle_normal : normals_from[v] + nearest(vertices_[v], front));
+          mesh.normal_indices.push_back(is_middle ? middle_normal : normals_from_[v] + nearest(vertices_[v], front));
         }
         made.users.push_back(crossings_.all[x].user);
       }
     }
     return made;
+  }
+
+  /// Where the surface ends: a triangle from the vertices on both sides of each face to the point of the rim
+  /// in it, and one in each cell between the points in two of its faces.
+  void add_rims(Contour& made) const {
+    struct Ends {
+      std::uint32_t to = kNoId, from = kNoId;  ///< points that a triangle leads to from the vertex, and from
+      std::uint32_t user = kNoId;
+    };
+    std::map<std::uint32_t, Ends> ends;  // by sheet
+    TriangleMesh& mesh = made.mesh;
+    const auto add = [&](std::uint32_t user, const std::array<std::uint32_t, 3>& corners,
+                         const std::array<std::uint32_t, 3>& normals) {
+      for (const std::uint32_t corner : corners) mesh.indices.push_back(corner);
+      for (const std::uint32_t normal : normals) mesh.normal_indices.push_back(normal);
+      made.users.push_back(user);
+    };
+    const auto normal_of = [&](std::uint32_t vertex, const Vec3f& front) {
+      return normals_from_[vertex] + nearest(vertices_[vertex], front);
+    };
+    std::map<std::uint32_t, std::uint32_t> rim_normals;  // by vertex
+    for (const RimPoint& rim : rims_) {
+      if (links_[rim.slot] != kNoId) continue;
+      const std::uint32_t x = rim.slot / kSlots;
+      const auto k = static_cast<std::size_t>(std::ranges::find(kFaces, rim.slot % kSlots) - kFaces);
+      std::uint32_t from = sheet(x, kQuadrants[k]), to = sheet(x, kQuadrants[(k + 1) % 4]);
+      if (crossings_.all[x].turn < 0) std::swap(from, to);
+      const auto point = static_cast<std::uint32_t>(mesh.positions.size());
+      const auto normal = static_cast<std::uint32_t>(mesh.normals.size());
+      mesh.positions.push_back(Vec3f(rim.position)), mesh.normals.push_back(rim.normal);
+      rim_normals[point] = normal;
+      add(crossings_.all[x].user, {to, from, point},
+          {normal_of(to, rim.normal), normal_of(from, rim.normal), normal});
+      ends[from].to = point, ends[to].from = point, ends[from].user = ends[to].user = crossings_.all[x].user;
+    }
+    for (const auto& [vertex, end] : ends) {
+      if (end.to == kNoId || end.from == kNoId) continue;
+      const std::uint32_t normal = rim_normals[end.from];
+      add(end.user, {vertex, end.from, end.to},
+          {normal_of(vertex, mesh.normals[normal]), normal, rim_normals[end.to]});
+    }
   }
 
   /// The normal of a triangle; that of the crossing if the triangle is degenerate.
@@ -240,7 +291,9 @@ class Meshing {
   const ContourCrossings& crossings_;
   const std::vector<SlotNumber>& links_;
   const ContourSheets& sheets_;
+  const std::vector<RimPoint>& rims_;
   std::vector<SheetVertex>& vertices_;
+  std::vector<std::uint32_t> normals_from_;  ///< the first normal of each vertex in the mesh
   std::vector<std::pair<SlotNumber, std::uint32_t>> split_;  ///< links and the vertices on them
 };
 
@@ -254,8 +307,9 @@ Contour contour(const Accel& accel, const ContourOptions& options) {
   if (options.closed) make_consistent(grid, crossings);
   const std::vector<SlotNumber> links = link_crossings(grid, crossings, options.closed);
   const ContourSheets sheets = find_sheets(crossings, links);
-  std::vector<SheetVertex> vertices = place_vertices(accel, grid, crossings, sheets);
-  return Meshing(grid, crossings, links, sheets, vertices).run();
+  const std::vector<RimPoint> rims = find_rims(accel, grid, crossings, links);
+  std::vector<SheetVertex> vertices = place_vertices(accel, grid, crossings, sheets, links, rims);
+  return Meshing(grid, crossings, links, sheets, rims, vertices).run();
 }
 
 }  // namespace oktett

@@ -105,8 +105,9 @@ Vec3d minimum_in(const PlaneError& error, const Vec3d& start, const Vec3d& lo, c
 class Placing {
  public:
   Placing(const Accel& accel, const ContourGrid& grid, const ContourCrossings& crossings,
-          const ContourSheets& sheets)
-      : accel_(accel), grid_(grid), crossings_(crossings), sheets_(sheets) {}
+          const ContourSheets& sheets, const std::vector<SlotNumber>& links,
+          const std::vector<RimPoint>& rims)
+      : accel_(accel), grid_(grid), crossings_(crossings), sheets_(sheets), links_(links), rims_(rims) {}
 
   void run(std::size_t begin, std::size_t end, SheetVertex* out) {
     std::vector<MovingVertex> vertices;
@@ -121,55 +122,67 @@ class Placing {
   }
 
  private:
-  MovingVertex first(std::size_t sheet) const {
+  /// A place on the sheet.
+  struct Point {
+    Vec3d position, normal;
+  };
+
+  /// Crossings, and points of rims.
+  void gather(std::size_t sheet) {
+    points_.clear();
+    for (std::uint32_t i = sheets_.begin[sheet]; i < sheets_.begin[sheet + 1]; ++i) {
+      const std::uint32_t quadrant = sheets_.quadrants[i], x = quadrant / kSlots;
+      points_.push_back({crossings_.position(grid_, x), Vec3d(crossings_.all[x].normal)});
+      if (rims_.empty()) continue;
+      const auto [first, second] = slots_of(quadrant);
+      for (const SlotNumber slot : {first, second})
+        if (const RimPoint* const rim = find_rim(rims_, std::min(slot, links_[slot])))
+          points_.push_back({rim->position, Vec3d(rim->normal)});
+    }
+  }
+
+  MovingVertex first(std::size_t sheet) {
+    gather(sheet);
     MovingVertex v;
-    const std::uint32_t begin = sheets_.begin[sheet], end = sheets_.begin[sheet + 1];
     PlaneError error;
     Vec3d sum;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t x = sheets_.quadrants[i] / kSlots;
-      const Vec3d p = crossings_.position(grid_, x);
-      error.add(p, Vec3d(crossings_.all[x].normal));
-      sum += p;
-    }
-    const Vec3d mean = sum / static_cast<double>(end - begin);
-    const std::uint32_t quadrant = sheets_.quadrants[begin];
+    for (const Point& p : points_) error.add(p.position, p.normal), sum += p.position;
+    const Vec3d mean = sum / static_cast<double>(points_.size());
+    const std::uint32_t quadrant = sheets_.quadrants[sheets_.begin[sheet]];
     const ContourCrossing& crossing = crossings_.all[quadrant / kSlots];
     GridPlace cell = crossing.place;
     if ((quadrant & 2) != 0) cell = moved(cell, (crossing.axis + 1) % 3, -1);
     if ((quadrant & 1) != 0) cell = moved(cell, (crossing.axis + 2) % 3, -1);
     v.lo = grid_.corner(cell), v.hi = grid_.corner({cell[0] + 1, cell[1] + 1, cell[2] + 1});
     v.position = minimum_in(error, mean, v.lo, v.hi, 0);
-    find_parts(begin, end, v);
+    find_parts(v);
     return v;
   }
 
-  Vec3d normal(std::uint32_t i) const {
-    return Vec3d(crossings_.all[sheets_.quadrants[i] / kSlots].normal);
-  }
-
-  /// Divides the crossings of a sheet by their normals.
-  void find_parts(std::uint32_t begin, std::uint32_t end, MovingVertex& v) const {
-    Vec3d seeds[3] = {normal(begin)};
+  /// Divides the points of a sheet by their normals.
+  void find_parts(MovingVertex& v) const {
+    Vec3d seeds[3] = {points_.front().normal};
     v.count = 1;
     double least = kSmooth;
-    for (std::uint32_t i = begin; i < end; ++i)
-      if (const double d = dot(normal(i), seeds[0]); d < least) least = d, seeds[1] = normal(i), v.count = 2;
+    for (const Point& p : points_)
+      if (const double d = dot(p.normal, seeds[0]); d < least) least = d, seeds[1] = p.normal, v.count = 2;
     if (v.count == 2) {
       const Vec3d across = cross(seeds[0], seeds[1]);
-      double most = kCorner * length(across);
-      for (std::uint32_t i = begin; i < end && length(across) > 0.1; ++i)
-        if (const double d = std::abs(dot(normal(i), across)); d > most)
-          most = d, seeds[2] = normal(i), v.count = 3;
+      // The two sides of a plate; a third part is what is least along them.
+      const bool opposite = length(across) < 0.1;
+      double most = opposite ? 0.5 : kCorner * length(across);
+      for (const Point& p : points_) {
+        const double d = opposite ? length(cross(p.normal, seeds[0])) : std::abs(dot(p.normal, across));
+        if (d > most) most = d, seeds[2] = p.normal, v.count = 3;
+      }
     }
     Vec3d middles[3], normals[3];
     int sizes[3] = {};
-    for (std::uint32_t i = begin; i < end; ++i) {
+    for (const Point& p : points_) {
       int best = 0;
       for (int k = 1; k < v.count; ++k)
-        if (dot(normal(i), seeds[k]) > dot(normal(i), seeds[best])) best = k;
-      middles[best] += crossings_.position(grid_, sheets_.quadrants[i] / kSlots);
-      normals[best] += normal(i), ++sizes[best];
+        if (dot(p.normal, seeds[k]) > dot(p.normal, seeds[best])) best = k;
+      middles[best] += p.position, normals[best] += p.normal, ++sizes[best];
     }
     for (int k = 0; k < v.count; ++k) {
       v.parts[k].middle = v.parts[k].point = middles[k] / static_cast<double>(sizes[k]);
@@ -242,15 +255,20 @@ class Placing {
   const ContourGrid& grid_;
   const ContourCrossings& crossings_;
   const ContourSheets& sheets_;
+  const std::vector<SlotNumber>& links_;
+  const std::vector<RimPoint>& rims_;
+  std::vector<Point> points_;  ///< of the sheet at hand
 };
 
 }  // namespace
 
 std::vector<SheetVertex> place_vertices(const Accel& accel, const ContourGrid& grid,
-                                        const ContourCrossings& crossings, const ContourSheets& sheets) {
+                                        const ContourCrossings& crossings, const ContourSheets& sheets,
+                                        const std::vector<SlotNumber>& links,
+                                        const std::vector<RimPoint>& rims) {
   std::vector<SheetVertex> vertices(sheets.count());
   Chunks(vertices.size(), kVerticesOfTask).each(true, [&](std::size_t, std::size_t begin, std::size_t end) {
-    Placing(accel, grid, crossings, sheets).run(begin, end, vertices.data() + begin);
+    Placing(accel, grid, crossings, sheets, links, rims).run(begin, end, vertices.data() + begin);
   });
   return vertices;
 }

@@ -6,6 +6,7 @@
 
 #include "io/mesh/contour/grid.h"
 #include "io/mesh/contour/links.h"
+#include "io/mesh/contour/rims.h"
 
 namespace oktett {
 
@@ -29,10 +30,13 @@ struct SheetVertex {
   std::uint8_t smooth_parts = 1;
 };
 
-/// The vertex of each sheet. It is the minimum of the error function of its crossings within its cell, moved
+/// The vertex of each sheet. It is the minimum of the error function of its crossings, and of the points of
+/// rims in the faces around, within its cell, moved
 /// to the surface then: rays along the normals of its smooth parts meet the surface beside it, and the
 /// minimum for these places is nearer to the edge or corner, where parts are curved.
 std::vector<SheetVertex> place_vertices(const Accel& accel, const ContourGrid& grid,
-                                        const ContourCrossings& crossings, const ContourSheets& sheets);
+                                        const ContourCrossings& crossings, const ContourSheets& sheets,
+                                        const std::vector<SlotNumber>& links,
+                                        const std::vector<RimPoint>& rims);
 
 }  // namespace oktett
