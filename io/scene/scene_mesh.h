@@ -20,7 +20,7 @@ struct SceneMeshOptions {
   /// the scene, where their grids were sampled; at most to kMostMeshCells.
   double tolerance = 0;
   /// If not empty: only objects of this name, those of instances included, and prototypes of it.
-  std::string select;
+  std::string select{};
 };
 
 /// All objects of a scene at time 0, in its coordinates. Meshes and triangles are as they are, boxes, disks
