@@ -60,8 +60,7 @@ SceneMeshOptions scene_mesh_options(const ConvertArguments& arguments) {
         parse_amount("--resolution", arguments.resolution, "cells", 1, kMostMeshCells));
   }
   if (!arguments.tolerance.empty())
-    options.tolerance =
-        parse_amount("--tolerance", arguments.tolerance, "units of the scene", 1e-30, 1e30);
+    options.tolerance = parse_amount("--tolerance", arguments.tolerance, "units of the scene", 1e-30, 1e30);
   options.select = arguments.select;
   return options;
 }
@@ -72,8 +71,7 @@ void check_no_scene_options(const ConvertArguments& arguments) {
                                                               {"--tolerance", arguments.tolerance},
                                                               {"--select", arguments.select}};
   for (const auto& [option, word] : words)
-    if (!word.empty())
-      throw Error(fmt::format("{}: {} is for a mesh of a scene", arguments.input, option));
+    if (!word.empty()) throw Error(fmt::format("{}: {} is for a mesh of a scene", arguments.input, option));
 }
 
 bool is_scene_file(const std::string& path) {
@@ -123,13 +121,14 @@ int run_convert(const ConvertArguments& arguments) {
 
 void add_convert_command(CommandLine& line) {
   const auto a = std::make_shared<ConvertArguments>();
-  Verb verb =
-      line.add_verb("convert", "Write a mesh in another format, a scene as one mesh, or a .pov as a scene file",
-                    [a] { return run_convert(*a); });
+  Verb verb = line.add_verb("convert",
+                            "Write a mesh in another format, a scene as one mesh, or a .pov as a scene file",
+                            [a] { return run_convert(*a); });
   verb.positional("input", a->input, "INPUT",
                   ("Mesh to read: " + mesh_extensions() + "; or a scene: .yaml or .pov").c_str());
-  verb.positional("output", a->output, "OUTPUT",
-                  ("File to write: " + or_list(written_mesh_extensions()) + "; of a .pov also .yaml").c_str());
+  verb.positional(
+      "output", a->output, "OUTPUT",
+      ("File to write: " + or_list(written_mesh_extensions()) + "; of a .pov also .yaml").c_str());
   verb.option("--resolution", &a->resolution, "N",
               "Scenes: cells along the longest edge of each exact shape; default: 64");
   verb.option("--tolerance", &a->tolerance, "LENGTH", "Scenes: refine until triangles are no farther off");
@@ -138,7 +137,8 @@ void add_convert_command(CommandLine& line) {
             ("Write text instead of bytes (" + and_list(text_mesh_extensions()) + ")").c_str());
   verb.flag("--weld", a->options.weld, "Make one of all vertices at the same place");
   add_gltf_options(verb, a->gltf, false);
-  verb.option("-D", &a->definitions, "k=v", "Set ${k} in a scene file, or declare k in a .pov; may be repeated");
+  verb.option("-D", &a->definitions, "k=v",
+              "Set ${k} in a scene file, or declare k in a .pov; may be repeated");
   add_pov_files_option(verb, a->pov_files);
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
   add_limit_options(verb, a->limits);

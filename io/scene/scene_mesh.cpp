@@ -61,8 +61,9 @@ class Flattening {
         add(prototype.objects, to_world, own, taken || prototype.name == select_);
       } else if (taken && to_world.is_invertible()) {
         if (places_.size() == kMostPlacements)
-          throw Error(Location{scene_.source},
-                      fmt::format("instances show more than {} objects, too many for one mesh", kMostPlacements));
+          throw Error(
+              Location{scene_.source},
+              fmt::format("instances show more than {} objects, too many for one mesh", kMostPlacements));
         places_.push_back({&object, to_world, own});
       }
     }
@@ -117,7 +118,8 @@ class SceneMeshing {
     for (const ObjectPlace& place : places) {
       const ObjectMesh& made = mesh_of(*place.object, scales[place.object]);
       if (made.mesh == nullptr) continue;
-      all.placements.push_back({place.object->name, shared(all, place, made), place.to_world * made.to_shape});
+      all.placements.push_back(
+          {place.object->name, shared(all, place, made), place.to_world * made.to_shape});
       triangles += made.mesh->triangle_count();
     }
     check_room(triangles);
@@ -131,10 +133,11 @@ class SceneMeshing {
   void check_room(std::uint64_t triangles) const {
     const std::uint64_t needed = triangles * kBytesOfTriangle, free = available_memory();
     if (needed > free)
-      throw Error(Location{scene_.source},
-                  fmt::format("a mesh of {} triangles takes {} of memory, and {} are free; ask for fewer cells, "
-                              "or for some of the objects",
-                              triangles, memory_text(needed), memory_text(free)));
+      throw Error(
+          Location{scene_.source},
+          fmt::format("a mesh of {} triangles takes {} of memory, and {} are free; ask for fewer cells, "
+                      "or for some of the objects",
+                      triangles, memory_text(needed), memory_text(free)));
   }
 
   /// The number of the mesh with the material of a place.
@@ -155,7 +158,8 @@ class SceneMeshing {
   const ObjectMesh& mesh_of(const Object& object, double scale) {
     const auto [found, is_new] = meshes_.try_emplace(&object);
     if (is_new) {
-      found->second = std::visit([&](const auto& shape) { return convert(shape, object, scale); }, object.shape);
+      found->second =
+          std::visit([&](const auto& shape) { return convert(shape, object, scale); }, object.shape);
       const TriangleMesh* const mesh = found->second.mesh.get();
       if (mesh != nullptr && mesh->triangle_count() == 0) found->second.mesh.reset();
     }
@@ -191,7 +195,8 @@ class SceneMeshing {
   ObjectMesh convert(const T& shape, const Object& object, double scale) {
     // Of a circle; as many corners as keep its polygon within the tolerance.
     const double off = options_.tolerance > 0 ? options_.tolerance / (scale * radius_of(shape)) : 0;
-    const double least = off > 0 ? std::numbers::pi / std::acos(1 - std::min(off, 1.0)) : 3.0 * options_.resolution;
+    const double least =
+        off > 0 ? std::numbers::pi / std::acos(1 - std::min(off, 1.0)) : 3.0 * options_.resolution;
     const auto around = static_cast<std::uint32_t>(std::clamp(std::ceil(least), 16.0, 1e5));
     if (std::optional<TriangleMesh> mesh = plain_mesh(Shape(shape), around))
       return {std::make_shared<TriangleMesh>(std::move(*mesh)), {object.material}, {}};
@@ -227,8 +232,7 @@ class SceneMeshing {
       const Vec3d extent = Vec3d(box.extent()) * stretched;
       const double size = max_component(extent);
       if (!(size > 0) || !is_finite(Vec3d(box.center()))) return {};
-      only.transform =
-          Affine::scaling(stretched * (2 / size)) * Affine::translation(-Vec3d(box.center()));
+      only.transform = Affine::scaling(stretched * (2 / size)) * Affine::translation(-Vec3d(box.center()));
     }
     if (!only.transform.is_invertible()) return {};
     ObjectMesh made;

@@ -16,8 +16,8 @@ inline constexpr std::uint32_t kMostMeshCells = 8192;
 struct SceneMeshOptions {
   /// Cells of the grid along the longest edge of each exact shape, in [1, kMostMeshCells].
   std::uint32_t resolution = 64;
-  /// If not 0, grids are refined instead until triangles are off the surface by no more than this, in units of
-  /// the scene, where their grids were sampled; at most to kMostMeshCells.
+  /// If not 0, grids are refined instead until triangles are off the surface by no more than this, in units
+  /// of the scene, where their grids were sampled; at most to kMostMeshCells.
   double tolerance = 0;
   /// If not empty: only objects of this name, those of instances included, and prototypes of it.
   std::string select{};

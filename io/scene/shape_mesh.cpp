@@ -119,7 +119,8 @@ TriangleMesh mesh_of(const PolygonShape& polygon) {
   FlatMesh flat(normal);
   PolygonTriangulator triangulator;
   const std::span<const std::uint32_t> corners = triangulator.run(points);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) flat.add(corners[i], corners[i + 1], corners[i + 2]);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    flat.add(corners[i], corners[i + 1], corners[i + 2]);
   for (const Vec3f& p : points) flat.mesh.positions.push_back(p);
   return std::move(flat.mesh);
 }
@@ -153,10 +154,12 @@ void leave_out_details(Shape& shape, std::uint32_t cells) {
   std::visit(
       [&](auto& form) {
         using Form = std::remove_cvref_t<decltype(form)>;
-        if constexpr (std::is_same_v<Form, MengerShape>) form.depth = std::min(form.depth, generations(1.0 / 3));
+        if constexpr (std::is_same_v<Form, MengerShape>)
+          form.depth = std::min(form.depth, generations(1.0 / 3));
         if constexpr (std::is_same_v<Form, SphereflakeShape>)
           form.depth = std::min(form.depth, generations(form.ratio));
-        if constexpr (std::is_same_v<Form, TerrainShape>) form.depth = std::min(form.depth, generations(0.5) + 1);
+        if constexpr (std::is_same_v<Form, TerrainShape>)
+          form.depth = std::min(form.depth, generations(0.5) + 1);
         if constexpr (std::is_same_v<Form, IfsShape>) form.least = std::max(form.least, 1.0 / cells);
       },
       exact->form);

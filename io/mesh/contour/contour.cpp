@@ -58,7 +58,8 @@ class Meshing {
   Contour run() {
     split_double_links();
     const std::size_t count = crossings_.all.size();
-    if (vertices_.size() + count > 0xfffffffe) throw Error("the mesh has too many vertices; ask for fewer cells");
+    if (vertices_.size() + count > 0xfffffffe)
+      throw Error("the mesh has too many vertices; ask for fewer cells");
     std::vector<Patch> patches(count);
     in_parts(count, 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t x = begin; x < end; ++x)
@@ -88,8 +89,8 @@ class Meshing {
     std::ranges::sort(edges);
     const auto same = [](const auto& e, const auto& f) { return e[0] == f[0] && e[1] == f[1]; };
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      const bool doubled = (i > 0 && same(edges[i - 1], edges[i])) ||
-                           (i + 1 < edges.size() && same(edges[i], edges[i + 1]));
+      const bool doubled =
+          (i > 0 && same(edges[i - 1], edges[i])) || (i + 1 < edges.size() && same(edges[i], edges[i + 1]));
       if (!doubled) continue;
       const SlotNumber slot = edges[i][2];
       const std::uint32_t x = slot / kSlots, y = links_[slot] / kSlots;
@@ -107,7 +108,8 @@ class Meshing {
   std::uint32_t vertex_on(SlotNumber slot) const {
     if (split_.empty() || links_[slot] == kNoId) return kNoId;
     const SlotNumber link = link_of(slot);
-    const auto found = std::ranges::lower_bound(split_, link, {}, &std::pair<SlotNumber, std::uint32_t>::first);
+    const auto found =
+        std::ranges::lower_bound(split_, link, {}, &std::pair<SlotNumber, std::uint32_t>::first);
     return found != split_.end() && found->first == link ? found->second : kNoId;
   }
 
@@ -204,7 +206,8 @@ class Meshing {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       mesh.positions.push_back(Vec3f(vertices_[i].position));
       normals_from_[i] = static_cast<std::uint32_t>(mesh.normals.size());
-      for (std::uint32_t k = 0; k < vertices_[i].smooth_parts; ++k) mesh.normals.push_back(vertices_[i].normals[k]);
+      for (std::uint32_t k = 0; k < vertices_[i].smooth_parts; ++k)
+        mesh.normals.push_back(vertices_[i].normals[k]);
     }
     for (std::uint32_t x = 0; x < patches.size(); ++x) {
       const Patch& patch = patches[x];
@@ -221,7 +224,8 @@ class Meshing {
         for (const std::uint32_t v : patch.triangles[t]) {
           const bool is_middle = v >= vertices_.size();
           mesh.indices.push_back(is_middle ? middle : v);
-          mesh.normal_indices.push_back(is_middle ? middle_normal : normals_from_[v] + nearest(vertices_[v], front));
+          mesh.normal_indices.push_back(is_middle ? middle_normal
+                                                  : normals_from_[v] + nearest(vertices_[v], front));
         }
         made.users.push_back(crossings_.all[x].user);
       }
@@ -293,7 +297,7 @@ class Meshing {
   const ContourSheets& sheets_;
   const std::vector<RimPoint>& rims_;
   std::vector<SheetVertex>& vertices_;
-  std::vector<std::uint32_t> normals_from_;  ///< the first normal of each vertex in the mesh
+  std::vector<std::uint32_t> normals_from_;                  ///< the first normal of each vertex in the mesh
   std::vector<std::pair<SlotNumber, std::uint32_t>> split_;  ///< links and the vertices on them
 };
 

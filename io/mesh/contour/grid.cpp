@@ -82,16 +82,18 @@ LineChunk sample_lines(const Accel& accel, const ContourGrid& grid, int axis, st
   direction[axis] = 1;
   RayBatch rays;
   for (std::size_t line = begin; line < end; ++line)
-    rays.push_back({Vec3f(grid.corner(grid.start_of(axis, line))), 0, direction, nodes.back() - nodes.front()});
+    rays.push_back(
+        {Vec3f(grid.corner(grid.start_of(axis, line))), 0, direction, nodes.back() - nodes.front()});
   LineChunk chunk;
   chunk.counts.assign(end - begin, 0);
   std::size_t on_edge = 0;
   for (const ContourSample& sample : sample_rays(accel, rays)) {
     ContourCrossing crossing;
     crossing.place = grid.start_of(axis, begin + sample.ray);
-    const auto next =
-        std::ranges::upper_bound(nodes, sample.position[axis], {}, [](float x) { return static_cast<double>(x); });
-    crossing.place[k] = std::clamp(static_cast<std::int32_t>(next - nodes.begin()) - 1, 0, grid.cells(axis) - 1);
+    const auto next = std::ranges::upper_bound(nodes, sample.position[axis], {},
+                                               [](float x) { return static_cast<double>(x); });
+    crossing.place[k] =
+        std::clamp(static_cast<std::int32_t>(next - nodes.begin()) - 1, 0, grid.cells(axis) - 1);
     crossing.at = sample.position[axis], crossing.normal = sample.normal, crossing.user = sample.user;
     crossing.axis = static_cast<std::uint8_t>(axis);
     crossing.turn = sample.normal[axis] >= 0 ? 1 : -1;
@@ -130,7 +132,8 @@ ContourCrossings sample_grid(const Accel& accel, const ContourGrid& grid) {
       found.all.insert(found.all.end(), part.crossings.begin(), part.crossings.end());
       if (found.all.size() > std::size_t{1} << 29)
         throw Error("the surface crosses more than 2^29 edges of the grid; ask for fewer cells");
-      for (const std::uint32_t n : part.counts) begin.push_back(static_cast<std::uint32_t>(count)), count += n;
+      for (const std::uint32_t n : part.counts)
+        begin.push_back(static_cast<std::uint32_t>(count)), count += n;
     }
     begin.push_back(static_cast<std::uint32_t>(count));
   }

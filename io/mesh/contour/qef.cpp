@@ -13,8 +13,8 @@ void PlaneError::add(const Vec3d& point, const Vec3d& normal) {
   }
 }
 
-/// Eigenvalues on the diagonal of `a`, which is symmetric, and eigenvectors in the columns of `q`, by Jacobi's
-/// rotations.
+/// Eigenvalues on the diagonal of `a`, which is symmetric, and eigenvectors in the columns of `q`, by
+/// Jacobi's rotations.
 static void diagonalize(double (&a)[3][3], double (&q)[3][3]) {
   for (int sweep = 0; sweep < 12; ++sweep) {
     const double off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];

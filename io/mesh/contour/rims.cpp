@@ -23,8 +23,8 @@ struct RimSearch {
   double lo, hi;      ///< the ends of the edge
   Vec3d at;           ///< the last place of the curve
   Vec3f normal;
-  double tip_side;    ///< direction of the search, 1 or -1
-  bool turns;         ///< the curve comes back to the edge
+  double tip_side;  ///< direction of the search, 1 or -1
+  bool turns;       ///< the curve comes back to the edge
 };
 
 /// The direction across the edge of a slot: the axis, and 1 or -1.
@@ -55,7 +55,8 @@ void step(const Accel& accel, std::vector<RimSearch>& searches) {
     const double along = -n(search.towards) / n(search.axis) * across;
     const double off = std::abs(sample.position[search.axis] - (search.at[search.axis] + along));
     const bool same = dot(sample.normal, search.normal) > 0.3f;
-    const double allowed = search.turns ? search.hi - search.lo : 1.5 * std::abs(across) + 0.5 * std::abs(along);
+    const double allowed =
+        search.turns ? search.hi - search.lo : 1.5 * std::abs(across) + 0.5 * std::abs(along);
     if (same && off <= allowed && off < found[sample.ray].off) found[sample.ray] = {off, sample};
   }
   for (std::size_t i = 0; i < searches.size(); ++i) {
@@ -72,8 +73,8 @@ void step(const Accel& accel, std::vector<RimSearch>& searches) {
 
 }  // namespace
 
-std::vector<RimPoint> find_rims(const Accel& accel, const ContourGrid& grid, const ContourCrossings& crossings,
-                                const std::vector<SlotNumber>& links) {
+std::vector<RimPoint> find_rims(const Accel& accel, const ContourGrid& grid,
+                                const ContourCrossings& crossings, const std::vector<SlotNumber>& links) {
   std::vector<RimSearch> all;
   for (SlotNumber slot = 0; slot < links.size(); ++slot) {
     const ContourCrossing& crossing = crossings.all[slot / kSlots];

@@ -36,7 +36,8 @@ ContourSheets find_sheets(const ContourCrossings& crossings, const std::vector<S
   Sets sets(kSlots * crossings.all.size());
   for (std::uint32_t slot = 0; slot < links.size(); ++slot)
     if (links[slot] != kNoId && slot < links[slot])
-      for (const std::uint32_t side : {0u, 1u}) sets.join(quadrant_at(slot, side), quadrant_at(links[slot], side));
+      for (const std::uint32_t side : {0u, 1u})
+        sets.join(quadrant_at(slot, side), quadrant_at(links[slot], side));
   ContourSheets sheets;
   sheets.of_quadrant.resize(links.size());
   std::vector<std::uint32_t> sizes;
@@ -205,7 +206,8 @@ class Placing {
       for (int k = 0; k < v.count && !v.done; ++k) {
         const SmoothPart& part = v.parts[k];
         const Vec3d at = v.count == 1 ? v.position : v.position + (part.middle - v.position) * kAside;
-        rays.push_back({Vec3f(at + part.normal * reach), 0, Vec3f(-part.normal), static_cast<float>(2 * reach)});
+        rays.push_back(
+            {Vec3f(at + part.normal * reach), 0, Vec3f(-part.normal), static_cast<float>(2 * reach)});
         asked.push_back({i, k, reach});
       }
     }

@@ -71,7 +71,8 @@ class Mending {
       if (i == 0 || wrong[i - 1] != wrong[i] - 1) flip(before, wrong[i] - 1, wrong[i]);
       if (i + 1 == wrong.size() || wrong[i + 1] != wrong[i] + 1) flip(before, wrong[i], wrong[i]);
     }
-    std::ranges::stable_sort(line_, [](const ContourCrossing& a, const ContourCrossing& b) { return a.at < b.at; });
+    std::ranges::stable_sort(line_,
+                             [](const ContourCrossing& a, const ContourCrossing& b) { return a.at < b.at; });
     std::ranges::stable_sort(line_, {}, [this](const ContourCrossing& c) { return c.place[k_]; });
   }
 
@@ -84,9 +85,8 @@ class Mending {
       if (nearest == nullptr || std::abs(crossing.at - at) < std::abs(nearest->at - at)) nearest = &crossing;
     if (nearest == nullptr) return;
     if (nearest->place[k_] == edge && !has_copy_) {
-      const auto found = std::ranges::find_if(line_, [&](const ContourCrossing& c) {
-        return c.place[k_] == edge && c.at == nearest->at;
-      });
+      const auto found = std::ranges::find_if(
+          line_, [&](const ContourCrossing& c) { return c.place[k_] == edge && c.at == nearest->at; });
       if (found != line_.end()) {
         line_.erase(found);
         return;
@@ -142,7 +142,8 @@ void mend_slab(const ContourGrid& grid, int axis, std::int32_t third, const Word
         inside.data() + words * grid.line(0, place(0, static_cast<std::int32_t>(n)));
     for (std::size_t w = 0; w < words; ++w)
       if (row[w] != right[w])
-        for (std::int32_t x = static_cast<std::int32_t>(w) * 64; x < nodes_x && x / 64 == static_cast<std::int32_t>(w); ++x)
+        for (std::int32_t x = static_cast<std::int32_t>(w) * 64;
+             x < nodes_x && x / 64 == static_cast<std::int32_t>(w); ++x)
           if (bit(row.data(), static_cast<std::size_t>(x)) != bit(right, static_cast<std::size_t>(x)))
             wrong.emplace_back(x, static_cast<std::int32_t>(n));
   }
@@ -177,7 +178,8 @@ void make_consistent(const ContourGrid& grid, ContourCrossings& crossings) {
     const std::size_t slabs = grid.nodes[static_cast<std::size_t>(3 - axis)].size();
     in_parts(slabs, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t third = begin; third < end; ++third)
-        mend_slab(grid, axis, static_cast<std::int32_t>(third), inside, words, lines[static_cast<std::size_t>(axis)]);
+        mend_slab(grid, axis, static_cast<std::int32_t>(third), inside, words,
+                  lines[static_cast<std::size_t>(axis)]);
     });
   }
   // What surrounds the grid is on one side, so turns follow from the order.
