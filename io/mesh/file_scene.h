@@ -61,4 +61,7 @@ bool can_be_one_mesh(const FileScene& scene);
 /// can_be_one_mesh.
 MeshFile one_mesh(const std::string& path, FileScene scene);
 
+/// The same, however many triangles that are. Throws Error beyond 2^32 - 2 of them.
+MeshFile join_placements(const std::string& path, FileScene scene);
+
 }  // namespace oktett

@@ -336,6 +336,10 @@ MeshFile one_mesh(const std::string& path, FileScene scene) {
                 "its objects show " + std::to_string(placed(scene).corners / 3) + " triangles, of which " +
                     std::to_string(once(scene).corners / 3) +
                     " are different; too many for one mesh, but 'include' keeps them as instances");
+  return join_placements(path, std::move(scene));
+}
+
+MeshFile join_placements(const std::string& path, FileScene scene) {
   MeshFile file;
   Slots slots(path, scene);
   std::vector<PlacedMesh> all = std::move(scene.placements);

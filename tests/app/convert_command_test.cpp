@@ -76,8 +76,31 @@ TEST(ConvertCommand, ScenesOfPovRayBecomeSceneFiles) {
     return bytes.substr(bytes.find("IDAT"));
   };
   EXPECT_EQ(pixels("a.png"), pixels("b.png"));
-  EXPECT_EQ(run_command(dir, {"convert", "a.pov", "b.obj", "-D", "Shade=1"}).err,
-            "oktett: b.obj: a .pov becomes a scene file; expected the output .yaml or .yml\n");
+  EXPECT_EQ(run_command(dir, {"convert", "a.pov", "b.obj", "-D", "Shade=1"}).out,
+            "wrote b.obj: 1 triangles, 3 vertices\n");
+}
+
+TEST(ConvertCommand, ScenesBecomeOneMesh) {
+  const TempDir dir;
+  dir.write("a.yaml", std::string(test::kBall) + "  - plane:\n");
+  const CommandResult result = run_command(dir, {"convert", "a.yaml", "b.stl", "--resolution", "8"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(result.out.starts_with("wrote b.stl: ")) << result.out;
+  EXPECT_TRUE(contains(result.err, "a.yaml:7:5: warning: the plane has no end and is left out\n"))
+      << result.err;
+  const auto expect = [&](std::vector<std::string> words, const std::string& line) {
+    words.insert(words.begin(), "convert");
+    const CommandResult wrong = run_command(dir, words);
+    EXPECT_EQ(wrong.status, 2) << line;
+    EXPECT_TRUE(contains(wrong.err, line)) << wrong.err;
+  };
+  expect({"a.yaml", "c.ply", "--resolution", "0"},
+         "--resolution: '0' is out of range; expected cells from 1 to 8192");
+  expect({"a.yaml", "c.ply", "--resolution", "9", "--tolerance", "1"}, "exclude each other");
+  expect({"a.yaml", "c.ply", "--select", "x"}, "no object is named 'x'");
+  dir.write("a.obj", kMesh);
+  expect({"a.obj", "c.ply", "--tolerance", "1"}, "a.obj: --tolerance is for a mesh of a scene");
+  EXPECT_FALSE(std::filesystem::exists(dir.file("c.ply")));
 }
 
 }  // namespace

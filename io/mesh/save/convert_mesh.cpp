@@ -249,12 +249,16 @@ void check_mesh_output(const std::string& path, const ConvertOptions& options) {
   const OutputFile probe(path);
 }
 
-Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options) {
-  const ConvertedFormat& format = written_format(output, options);
+static void check_not_input(const std::string& input, const std::string& output) {
   std::error_code error;
   if (fs::equivalent(input, output, error)) throw Error(Location{output}, "is the input, too");
+}
+
+Conversion write_mesh(const std::string& input, MeshFile file, const std::string& output,
+                      const ConvertOptions& options) {
+  const ConvertedFormat& format = written_format(output, options);
+  check_not_input(input, output);
   Conversion result;
-  MeshFile file = load(input, options, result.losses);
   result.triangles = file.mesh.triangle_count(), result.vertices = file.mesh.positions.size();
   result.warnings = std::move(file.warnings);
   StrokeCount strokes;
@@ -270,6 +274,15 @@ Conversion convert_mesh(const std::string& input, const std::string& output, con
     if (!file.textures.empty()) result.losses.push_back("lost: " + count_of(file.textures.size(), "texture"));
   }
   std::ranges::move(format.write(output, file, options.ascii), std::back_inserter(result.losses));
+  return result;
+}
+
+Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options) {
+  written_format(output, options);
+  check_not_input(input, output);
+  MeshLosses losses;
+  Conversion result = write_mesh(input, load(input, options, losses), output, options);
+  result.losses.insert(result.losses.begin(), losses.begin(), losses.end());
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/gltf/gltf_options.h"
+#include "io/mesh/mesh_file.h"
 
 namespace oktett {
 
@@ -35,5 +36,10 @@ void check_mesh_output(const std::string& path, const ConvertOptions& options);
 /// Reads the mesh file `input` as load_mesh does and writes it to `output`: .obj, .ply, .stl or .glb, by its
 /// end. It appears under its name only when it is complete. Throws Error, also if there are no triangles.
 Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options);
+
+/// Writes what was read or made of `input` in the same way. Throws Error, also if there are no triangles, or
+/// if `output` is the input.
+Conversion write_mesh(const std::string& input, MeshFile file, const std::string& output,
+                      const ConvertOptions& options);
 
 }  // namespace oktett
