@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -115,7 +116,12 @@ class SceneMeshing {
     all.warnings = scene_.warnings;
     warnings_ = &all.warnings;
     std::uint64_t triangles = 0;
+    std::set<const Object*> bare;
     for (const ObjectPlace& place : places) {
+      if (place.material < scene_.materials.size() && !scene_.materials[place.material].surface) {
+        if (bare.insert(place.object).second) warn(*place.object, "only bounds a medium and is left out");
+        continue;
+      }
       const ObjectMesh& made = mesh_of(*place.object, scales[place.object]);
       if (made.mesh == nullptr) continue;
       all.placements.push_back(

@@ -23,12 +23,12 @@ struct SceneMeshOptions {
   std::string select{};
 };
 
-/// All objects of a scene at time 0, in its coordinates. Meshes and triangles are as they are, boxes, disks
+/// All objects of a scene at time 0, in its coordinates. Meshes and triangles are as they are; boxes, disks
 /// and polygons without holes become triangles, all other shapes contours (io/mesh/contour/contour.h), of
-/// fractals without what is smaller than a cell.
-/// Instances are flattened. What has no end, and points and lines, are left out with a warning that names
-/// them. Materials are those of the scene; textures that are not laid over uv do not
-/// fit. Throws Error if no object has the selected name, or there is no room for all.
+/// fractals without what is smaller than a cell. Instances are flattened. What has no end, what is no surface
+/// (Material::surface), and points and lines are left out with a warning that names them. Materials are those
+/// of the scene; textures that are not laid over uv do not fit. Throws Error if no object has the selected
+/// name, or if there is no room for all.
 MeshFile mesh_of_scene(const Scene& scene, const SceneMeshOptions& options = {});
 
 }  // namespace oktett

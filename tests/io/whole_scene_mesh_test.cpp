@@ -262,6 +262,15 @@ TEST(WholeSceneMesh, WhatHasNoEndIsLeftOutWithAWarning) {
   EXPECT_GT(file.mesh.triangle_count(), 100u);
 }
 
+TEST(WholeSceneMesh, WhatIsNoSurfaceIsLeftOut) {
+  const MeshFile file = file_of(
+      "media: {dust: {scattering: [0.1, 0.1, 0.1]}}\nmaterials: {air: {surface: false, interior: dust}}\n"
+      "objects:\n  - {box: {min: [-9, -9, -9], max: [9, 9, 9]}, material: air}\n  - sphere:\n",
+      {.resolution = 8});
+  EXPECT_LT(farthest(file.mesh, [](const Vec3d& p) { return length(p) - 1; }), 1e-6);
+  EXPECT_EQ(file.warnings.size(), 1u);
+}
+
 TEST(WholeSceneMesh, CombinationsHaveTheMaterialsOfTheirOperands) {
   const MeshFile file = file_of(
       "materials: {red: {color: [1, 0, 0]}, blue: {color: [0, 0, 1]}}\nobjects:\n  - difference:\n"
