@@ -91,7 +91,10 @@ RayBatch bounce_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, c
   return out;
 }
 
-RayBatch random_segments(const Box& box, std::size_t count) {
+RayBatch random_segments(const Box& bounds, std::size_t count) {
+  // Walls and floors often lie in the faces of the bounds. There, rounding would decide.
+  const Vec3f inset = bounds.extent() * (1.0f / 64);
+  const Box box{bounds.lo + inset, bounds.hi - inset};
   const auto point = [&](std::uint64_t key, std::uint32_t which, int face) {
     Vec3f p = box.lo;
     for (int k = 0; k < 3; ++k) {
