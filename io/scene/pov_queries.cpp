@@ -10,6 +10,7 @@
 #include "accel/accel.h"
 #include "accel/point_query.h"
 #include "io/pov/internal_functions.h"
+#include "io/pov/noise_functions.h"
 #include "io/pov/translate/translate.h"
 #include "io/scene/readers.h"
 #include "render/geometry.h"
