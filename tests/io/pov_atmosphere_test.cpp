@@ -132,6 +132,13 @@ TEST_F(PovAtmosphere, HeightFieldsOfFunctionsAreMeshes) {
   ASSERT_TRUE(grey);
   EXPECT_NEAR(at(*grey, 1 / 3.0, 1 / 3.0), 0.41343, 2e-4);
   EXPECT_NEAR(at(*grey, 2 / 3.0, 0), 0.52953, 2e-4);
+  // A sum without end in sight is none, nor is a function without values.
+  for (const char* const bad : {"sum(i, 1, 1e9, x)", "1/(x - x)"}) {
+    const std::string text = std::string("height_field { function 9, 9 { ") + bad + " } }";
+    EXPECT_TRUE(translate(text).meshes.empty()) << bad;
+    EXPECT_NE(warnings(text).find("has no value somewhere, or takes too many steps"), std::string::npos)
+        << bad;
+  }
   // Below the water nothing is seen, and no sides.
   const auto wet = heights("height_field { function 2, 2 { x } smooth water_level 0.25 }");
   ASSERT_TRUE(wet);

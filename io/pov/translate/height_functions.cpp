@@ -32,7 +32,8 @@ struct Heights {
 };
 
 /// The value at a place, as an image of 16 bits has it.
-std::optional<double> height_at(Context& context, const Function& function, double x, double y) {
+std::optional<double> height_at(Context& context, const Function& function, double x, double y,
+                                std::uint64_t most_steps) {
   const FunctionNode& last = function.nodes.back();
   double value = 0;
   if (function.components == 5 && last.block != nullptr && last.block->keyword == "pigment") {
@@ -42,7 +43,7 @@ std::optional<double> height_at(Context& context, const Function& function, doub
   } else {
     const double place[] = {x, y, 0};
     value = evaluate(function, std::span(place).first(std::min<std::size_t>(3, function.parameters.size())),
-                     context.queries);
+                     context.queries, most_steps);
   }
   if (!std::isfinite(value)) return std::nullopt;
   return std::round(std::clamp(value, 0.0, 1.0) * 65535) / 65535;
@@ -99,11 +100,15 @@ std::optional<MeshMaker> height_mesh(Context& context, const Function& function,
   if (context.queries == nullptr || function.nodes.empty()) return std::nullopt;
   Heights h{columns, rows, {}};
   h.y.reserve(std::size_t{columns} * rows);
+  // A function that takes more in all is none here.
+  constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 30;
+  const std::uint64_t most_steps = kMostSteps / (std::uint64_t{columns} * rows);
   try {
     for (std::uint32_t row = 0; row < rows; ++row)
       for (std::uint32_t column = 0; column < columns; ++column) {
         // The upper edge of the picture, where y is 0, lies at z = 1.
-        const auto y = height_at(context, function, column / (columns - 1.0), 1 - row / (rows - 1.0));
+        const auto y =
+            height_at(context, function, column / (columns - 1.0), 1 - row / (rows - 1.0), most_steps);
         if (!y) return std::nullopt;
         h.y.push_back(*y);
       }

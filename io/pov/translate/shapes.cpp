@@ -460,7 +460,7 @@ class ShapeMaker {
   /// `function COLUMNS, ROWS { ... }`, which stands before all else.
   std::optional<Shapes> function_heights() {
     const auto side = [&] {
-      constexpr double kMostSide = 4096;
+      constexpr double kMostSide = 2048;
       return static_cast<std::uint32_t>(std::clamp(a_.number("a number of places"), 2.0, kMostSide));
     };
     const std::uint32_t columns = side(), rows = side();
@@ -481,7 +481,8 @@ class ShapeMaker {
     }
     std::optional<MeshMaker> maker =
         height_mesh(context_, *function, {columns, rows, smooth, operand_, std::min(water, 1.0)});
-    if (!maker) return left_out("the function of a height field has no value somewhere");
+    if (!maker)
+      return left_out("the function of a height field has no value somewhere, or takes too many steps");
     Shapes shapes = mesh({{{std::move(*maker), nullptr}}, operand_});
     if (operand_) add_water(shapes, water);
     return shapes;

@@ -211,7 +211,7 @@ struct PovLight {
 };
 
 /// The most points along a side: more make pictures slow and hardly other.
-constexpr int kMostLightPoints = 8;
+constexpr int kMostLightPoints = 17;
 
 void read_area(Context& context, Arguments& l, PovLight& light) {
   for (LightPoints& points : light.area) points.side = l.vector("a side of the light");
