@@ -480,8 +480,8 @@ TEST(PovScene, LightsHaveTheirShape) {
             "[{directional: {direction: [0, -5, 1], from: [0, 5, 0], color: [1, 1, 1]}}]");
   const std::string round = lights("area_light 2*x, 2*z, 2, 2 circular");
   EXPECT_NE(round.find("position: [0.7071067811865"), std::string::npos) << round;
-  EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 17, 2 }"),
-            "scene.pov:2:48: warning: lights have at most 8 points along a side\n");
+  EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 18, 2 }"),
+            "scene.pov:2:48: warning: lights have at most 17 points along a side\n");
 }
 
 TEST(PovScene, LightsAndSurroundings) {
