@@ -8,7 +8,7 @@ set(OKTETT_PUBLIC_HEADERS
   kernels/heights/make_height_grid.h
   accel/accel.h accel/dynamic_accel.h accel/trace_scene.h accel/point_shapes.h accel/interaction_block.h accel/point_query.h
   render/scene.h render/material.h render/pattern.h render/pattern_kinds.h render/warp.h render/medium/medium.h render/medium/density_grid.h render/bsdf/principled_parameters.h render/light/environment_picture.h
-  render/light/light_profile.h render/light/light_fade.h render/fog.h
+  render/light/light_profile.h render/light/light_fade.h render/fog.h render/rainbow.h
   render/sampling/filter_kind.h render/tone.h render/motion.h render/camera.h render/picture.h render/render_options.h render/picture/render.h render/texture_sampler.h
   io/scene/scene_file.h io/gltf/gltf_options.h io/mesh/mesh_file.h io/mesh/load/load_mesh.h io/obj/obj.h io/image/image.h io/image/metadata.h io/image/texture.h io/image/heights.h)
 # What describes the exact surfaces.

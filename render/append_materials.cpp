@@ -12,6 +12,7 @@ std::uint32_t append_materials(std::vector<Material> materials, std::vector<Text
   const auto first_medium = static_cast<std::uint32_t>(scene.media.size());
   for (Material& material : materials) {
     if (material.interior != kNoId) material.interior += first_medium;
+    if (material.back != kNoId) material.back += first;
     for_each_texture(material, [first_texture](std::uint32_t& texture) {
       if (texture != kNoId) texture += first_texture;
     });

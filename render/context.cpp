@@ -51,7 +51,9 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
   s.exponent = highlight_exponent(m.specular, m.phong);
   s.varies = has_textures(m) || m.filter || m.opacity != 1 || (!m.emits_behind && glows(m)) || !m.surface ||
-             m.interior != kNoId || m.reflection_varies || !m.fresnel || m.conserve_energy;
+             m.interior != kNoId || m.reflection_varies || !m.fresnel || m.conserve_energy ||
+             m.brilliance != 1 || m.specular_blinn != 0 || m.grain != 0 || m.reflection_color ||
+             m.back != kNoId;
   s.reflection = m.reflection;
   s.transparency = m.transparency, s.ior = m.ior;
   return s;
@@ -129,7 +131,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.tracks_dielectrics = world.tracks_dielectrics;
   set_visibility(c);
   c.tracks_insides = world.tracks_insides;
-  if (c.tracks_insides) c.fogs = scene.fogs, c.marched = scene.media;
+  if (c.tracks_insides) c.fogs = scene.fogs, c.rainbows = scene.rainbows, c.marched = scene.media;
   if (c.tracks_dielectrics)
     for (const Medium& medium : scene.media) c.media.emplace_back(medium);
   if (c.tracks_dielectrics || c.tracks_insides) c.outer_medium = scene.medium;
@@ -142,7 +144,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || c.background_texture != kNoId ||
-                        lights.has_environment() || !c.fogs.empty();
+                        lights.has_environment() || !c.fogs.empty() || !c.rainbows.empty();
   // Shadow catchers count what they cover, and curved views may leave out a part of the picture.
   c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics && !c.catches &&
                  !is_curved(c.camera.projection);

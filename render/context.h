@@ -57,10 +57,11 @@ struct RenderContext {
   DielectricStack camera_dielectrics;  ///< the solids around the camera
   Vec3f camera_place;                  ///< where `camera_dielectrics` holds
   // What fills the ways of rays in Whitted's model:
-  bool tracks_insides = false;      ///< any of the following
-  std::span<const Fog> fogs;        ///< Scene::fogs
-  std::span<const Medium> marched;  ///< Scene::media
-  Insides camera_insides;           ///< the solids around the camera
+  bool tracks_insides = false;        ///< any of the following
+  std::span<const Fog> fogs;          ///< Scene::fogs
+  std::span<const Rainbow> rainbows;  ///< Scene::rainbows
+  std::span<const Medium> marched;    ///< Scene::media
+  Insides camera_insides;             ///< the solids around the camera
   Color background, ambient_light;
   std::uint32_t background_texture = kNoId;  ///< Scene::background_texture
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture

@@ -31,12 +31,23 @@ double fog_depth(const Fog& fog, const Vec3d& origin, const Vec3d& direction, do
   return (fog_below(start + rise) - fog_below(start)) / slope;
 }
 
+/// What is left of fog where clouds make it thinner.
+double thinned(const Fog& fog, const Vec3d& origin, const Vec3d& direction, double distance) {
+  if (fog.turbulence == Vec3d{0, 0, 0} || fog.turbulence_depth == 0) return 1;
+  // Ways that end nowhere have no middle.
+  if (std::isinf(distance)) return 1;
+  const Vec3d middle = origin + direction * (distance / 2);
+  return 1 - fog.turbulence_depth * std::min(1.0, value_turbulence(fog.clouds, middle * fog.turbulence)) *
+                 portable::exp(-distance / fog.distance);
+}
+
 }  // namespace
 
 Veil pass_fogs(std::span<const Fog> fogs, const Vec3d& origin, const Vec3d& direction, double distance) {
   Veil all;
   for (const Fog& fog : fogs) {
-    const double depth = fog_depth(fog, origin, direction, distance) / fog.distance;
+    const double depth = fog_depth(fog, origin, direction, distance) / fog.distance *
+                         thinned(fog, origin, direction, distance);
     const auto left = static_cast<float>(std::max(portable::exp(-depth), fog.transmit));
     const auto filter = static_cast<float>(fog.filter);
     const Color clear = Color{1, 1, 1} * (1 - filter) + fog.color * filter;

@@ -6,6 +6,7 @@
 
 #include "core/description.h"
 #include "core/vec3.h"
+#include "render/warp.h"
 
 namespace oktett {
 
@@ -18,6 +19,11 @@ struct Fog {
   double altitude = 0;   ///< 0: fog is everywhere; else where its density has fallen to a half
   double offset = 0;     ///< the height along `up` below which the density is full
   Vec3d up{0, 1, 0};     ///< of any length but zero
+  /// How much smaller than a unit the swaths of `clouds` are along each axis; zeros: it has none.
+  Vec3d turbulence{0, 0, 0};
+  /// A way's fog is thinner by this part times min(1, clouds in its middle) times e^(-length / distance).
+  double turbulence_depth = 0.5;
+  PatternTurbulence clouds{};  ///< without its amount
   bool operator==(const Fog&) const = default;
 
   static constexpr const char* kMap = "a fog";
@@ -33,6 +39,10 @@ struct Fog {
             "height along `up` below which a fog on the ground is as dense as can be");
     p.field("up", up, kCoordinate, "of any length but zero");
     p.check(length(up) > 0, "up", "the direction must not be zero");
+    p.field("turbulence", turbulence, kCoordinate,
+            "swaths: how many times smaller than a unit they are along each axis; zeros: none");
+    p.field("turbulence_depth", turbulence_depth, kUnitInterval, "the most that they take from fog");
+    clouds.describe(p);
   }
 };
 

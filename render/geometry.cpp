@@ -79,7 +79,7 @@ static bool needs_dielectrics(const Scene& scene) {
 /// Whether fog or media fill the ways of rays in Whitted's model.
 static bool needs_insides(const Scene& scene) {
   if (!traits(scene.integrator.kind).light_from_points) return false;
-  return !scene.fogs.empty() || scene.medium != kNoId ||
+  return !scene.fogs.empty() || !scene.rainbows.empty() || scene.medium != kNoId ||
          std::ranges::any_of(scene.materials, [](const Material& m) { return m.interior != kNoId; });
 }
 

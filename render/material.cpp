@@ -71,14 +71,21 @@ float greatest_albedo(const Material& m, std::span<const Texture> textures) {
   constexpr float kAny = std::numeric_limits<float>::infinity();
   const Color color = m.color * bounds(m.color_texture).greatest * bounds(m.tint_texture).greatest;
   const float least_exponent = m.phong * bounds(m.phong_texture).least.x;
-  // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere.
+  // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere. By the
+  // halfway direction, which turns half as fast, it has at most four times that.
+  const float least_blinn = m.blinn * bounds(m.blinn_texture).least.x;
+  const float least_brilliance = m.brilliance * bounds(m.brilliance_texture).least.x;
+  const float highlights = most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +
+                           most(m.specular_blinn, m.specular_blinn_texture, kAny) * 8 / (least_blinn + 1);
   const float mirror =
-      most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +
       std::max(most(m.reflection, m.reflection_texture, 1),
                m.reflection_varies ? most(m.reflection_grazing, m.reflection_grazing_texture, 1) : 0);
+  const Color specular_color = m.specular_color * bounds(m.specular_texture).greatest;
+  const Color mirror_color =
+      m.reflection_color ? *m.reflection_color * bounds(m.reflection_color_texture).greatest : specular_color;
   const float transparency = most(m.transparency, m.transparency_texture, 1);
-  Color sum = color * most(m.diffuse, m.diffuse_texture, kAny) +
-              m.specular_color * bounds(m.specular_texture).greatest * mirror;
+  Color sum = color * (most(m.diffuse, m.diffuse_texture, kAny) * 2 / (least_brilliance + 1)) +
+              specular_color * highlights + mirror_color * mirror;
   const Color passing = m.filter ? *m.filter * bounds(m.filter_texture).greatest : color;
   for (int k = 0; k < 3; ++k) sum[k] += transparency * std::max(1.0f, passing[k]);
   return max_component(sum);

@@ -113,22 +113,32 @@ inline constexpr std::int32_t kNoPriority = -1;
 
 /// A material of the Whitted model. The light that leaves a point is the sum of
 /// - emission,
-/// - color * (ambient * ambient light + diffuse * sum over lights),
-/// - specular_color * specular * highlights,
-/// - reflection * reflected ray,
+/// - color * (ambient * ambient light + diffuse * sum over lights, by the cosine to the power of brilliance),
+/// - specular_color * (specular * Phong's highlights + specular_blinn * Blinn's highlights),
+/// - reflection_color * reflection * reflected ray,
 /// - transparency * (refracted and reflected ray, split by Fresnel's equations).
 struct Material {
   std::string name;
-  Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light
-  Color specular_color{1, 1, 1};  ///< colour of highlights and mirror reflections
-  Color emission{0, 0, 0};        ///< radiance
-  bool emits_behind = true;       ///< both sides glow; false: only that of the geometric normal
-  std::string light_group{};      ///< of `emission`; empty: the default group
-  float ambient = 0.1f;           ///< [0, inf)
-  float diffuse = 0.8f;           ///< [0, inf)
-  float specular = 0;             ///< weight of the Phong highlight, [0, inf)
-  float phong = 32;               ///< Phong exponent, [0, inf)
-  float reflection = 0;           ///< weight of the mirror ray, [0, 1]; of one that varies, head-on
+  Color color{0.8f, 0.8f, 0.8f};            ///< colour of diffuse and ambient light
+  Color specular_color{1, 1, 1};            ///< colour of highlights and mirror reflections
+  std::optional<Color> reflection_color{};  ///< of mirror reflections; not given: `specular_color`
+  Color emission{0, 0, 0};                  ///< radiance
+  bool emits_behind = true;                 ///< both sides glow; false: only that of the geometric normal
+  std::string light_group{};                ///< of `emission`; empty: the default group
+  float ambient = 0.1f;                     ///< [0, inf)
+  float diffuse = 0.8f;                     ///< [0, inf)
+  float specular = 0;                       ///< weight of the Phong highlight, [0, inf)
+  float phong = 32;                         ///< Phong exponent, [0, inf)
+  /// Diffuse light of a lamp is that part of it that the cosine to the normal to this power is, [0, inf): 1
+  /// is Lambert's law, more leaves less light towards the edge of what is lit.
+  float brilliance = 1;
+  /// Weight and exponent of a highlight by the cosine between the normal and the direction halfway between
+  /// light and viewer (Blinn 1977), [0, inf).
+  float specular_blinn = 0, blinn = 128;
+  /// In Whitted's model: the most that is taken at random, from place to place, from the diffuse light of
+  /// each lamp, [0, inf).
+  float grain = 0;
+  float reflection = 0;  ///< weight of the mirror ray, [0, 1]; of one that varies, head-on
   /// If reflection_varies, the weight of the mirror ray at grazing angles, [0, 1]. Between it grows with 1 -
   /// c to the power of the falloff, > 0, c being the cosine of the angle to the normal; or, if that is 0, as
   /// Fresnel's equations say of `ior`.
@@ -158,7 +168,9 @@ struct Material {
   // Each multiplies the number of its name.
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
-  std::uint32_t reflection_grazing_texture = kNoId;
+  std::uint32_t reflection_grazing_texture = kNoId, reflection_color_texture = kNoId;
+  std::uint32_t brilliance_texture = kNoId, specular_blinn_texture = kNoId, blinn_texture = kNoId;
+  std::uint32_t grain_texture = kNoId;
   std::uint32_t ior_texture = kNoId, filter_texture = kNoId;
   /// These multiply `color` and `opacity` once more: colours of vertices beside an image.
   std::uint32_t tint_texture = kNoId, tint_opacity_texture = kNoId;
@@ -168,6 +180,9 @@ struct Material {
   /// Where solids overlap, the one of higher priority, >= 0, fills the space. Its index of refraction then
   /// counts relative to the solid around it that has a priority, too.
   std::int32_t priority = kNoPriority;
+  /// Index into Scene::materials: what is seen from the side from which the normal points away. Shadows, and
+  /// what is inside, are those of this material.
+  std::uint32_t back = kNoId;
   bool operator==(const Material&) const = default;
 };
 
@@ -192,7 +207,14 @@ inline constexpr PhongNumber kPhongNumbers[] = {
     {"transparency", &Material::transparency, &Material::transparency_texture,
      "weight of light that passes through", kUnitInterval},
     {"reflection_grazing", &Material::reflection_grazing, &Material::reflection_grazing_texture,
-     "weight of the mirrored ray at grazing angles, if it is not that of `reflection`", kUnitInterval}};
+     "weight of the mirrored ray at grazing angles, if it is not that of `reflection`", kUnitInterval},
+    {"brilliance", &Material::brilliance, &Material::brilliance_texture,
+     "power of the cosine by which diffuse light falls off"},
+    {"specular_blinn", &Material::specular_blinn, &Material::specular_blinn_texture,
+     "weight of highlights by Blinn"},
+    {"blinn", &Material::blinn, &Material::blinn_texture, "exponent of Blinn's highlight"},
+    {"grain", &Material::grain, &Material::grain_texture,
+     "`whitted`: most that is taken at random from the diffuse light of a lamp"}};
 
 /// Calls f(index) for each member of a material, which may be const, that is an index of a texture.
 template <class AnyMaterial, class F>
@@ -200,7 +222,8 @@ OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
   f(m.color_texture), f(m.specular_texture), f(m.emission_texture);
   f(m.opacity_texture), f(m.bump_texture), f(m.normal_texture);
   for (const PhongNumber& number : kPhongNumbers) f(m.*number.texture);
-  f(m.ior_texture), f(m.filter_texture), f(m.tint_texture), f(m.tint_opacity_texture);
+  f(m.ior_texture), f(m.filter_texture), f(m.reflection_color_texture), f(m.tint_texture),
+      f(m.tint_opacity_texture);
   if (!m.principled) return;
   for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
   for (const PrincipledColor& color : kPrincipledColors) f((*m.principled).*color.texture);
@@ -233,6 +256,7 @@ PrincipledMaterial principled_like(const Material& m);
 /// The numbers of kPhongNumbers at a place, in that order.
 struct PhongValues {
   float ambient, diffuse, specular, phong, reflection, transparency, reflection_grazing;
+  float brilliance = 1, specular_blinn = 0, blinn = 128, grain = 0;
 };
 
 /// What comes near to principled parameters in Whitted's model: smooth metal is a mirror, smooth glass is

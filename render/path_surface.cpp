@@ -50,6 +50,8 @@ PhongParameters phong_parameters(const Material& m) {
   parameters.transparency = m.transparency;
   parameters.filter = m.filter;
   parameters.ior = m.ior;
+  parameters.brilliance = m.brilliance, parameters.mirror_color = m.reflection_color;
+  parameters.specular_blinn = m.specular_blinn, parameters.blinn = m.blinn;
   return parameters;
 }
 
@@ -64,6 +66,8 @@ PhongParameters phong_parameters(const ShadingPoint& p) {
   parameters.transparency = p.values.transparency;
   parameters.filter = p.filter;
   parameters.ior = p.ior;
+  parameters.brilliance = p.values.brilliance, parameters.mirror_color = p.reflection_color;
+  parameters.specular_blinn = p.values.specular_blinn, parameters.blinn = p.values.blinn;
   return parameters;
 }
 
@@ -84,6 +88,7 @@ void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool fron
 
 /// Whether its parameters depend on the hit or the path, beside textures.
 bool varies_with_hit(const Material& m) {
+  if (m.back != kNoId) return true;
   if (!m.principled) return m.reflection_varies;
   const PrincipledParameters& p = m.principled->parameters;
   return p.anisotropy > 0 || disperses(p);

@@ -26,6 +26,7 @@
 #include "render/material.h"
 #include "render/medium/medium.h"
 #include "render/motion.h"
+#include "render/rainbow.h"
 #include "render/sampling/filter_kind.h"
 #include "render/tone.h"
 
@@ -550,8 +551,9 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Medium> media;
-  std::uint32_t medium = kNoId;  ///< index into `media`: what fills the space outside of all solids
-  std::vector<Fog> fogs;         ///< in Whitted's model, outside of solids
+  std::uint32_t medium = kNoId;   ///< index into `media`: what fills the space outside of all solids
+  std::vector<Fog> fogs;          ///< in Whitted's model, outside of solids
+  std::vector<Rainbow> rainbows;  ///< likewise
   std::vector<Light> lights;
   std::vector<LightTraits> light_traits;  ///< of the light of the same number; may be shorter
   std::vector<LightList> light_lists;     ///< at most kMostLightLists

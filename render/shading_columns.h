@@ -71,7 +71,10 @@ struct ShadingColumns {
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
   float color[3][kMost], specular_color[3][kMost];
   float filter[3][kMost];  ///< of light that passes through hits that are `varying`; of others it is `color`
+  float mirror_color[3][kMost];  ///< of hits that are `varying`; of others it is `specular_color`
   float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost], transparency[kMost];
+  float brilliance[kMost], grain[kMost];      ///< of hits that are `uneven`; `grain` is what is taken there
+  float specular_blinn[kMost], blinn[kMost];  ///< of hits that are `blinned`
   float eta[kMost];  ///< index of refraction behind the surface, as the ray sees it, relative to before it
   std::int32_t exponent[kMost];
   /// Bit k: the material of hit k `varies`, or `sends_rays`. Lanes after the last hit repeat its bits.
@@ -79,6 +82,9 @@ struct ShadingColumns {
   /// Bit k: light that passes hit k is not split by Fresnel's equations, see Material::fresnel. Of hits that
   /// are `varying` alone.
   std::uint64_t unsplit;
+  /// Bit k: the diffuse light of hit k is not that of Lambert's law, or the hit has a highlight by Blinn. Of
+  /// hits that are `varying` alone.
+  std::uint64_t uneven, blinned;
 
   RaisedPoints* raised = nullptr;  ///< of the hits
 };

@@ -103,6 +103,13 @@ Color color_at(const RenderContext& c, const Material& m, const TexturePlace& pl
   return textured(c, textured(c, m.color, m.color_texture, place), m.tint_texture, place);
 }
 
+/// Of light that is mirrored, if it is not that of highlights.
+std::optional<Color> reflection_color_at(const RenderContext& c, const Material& m,
+                                         const TexturePlace& place) {
+  if (!m.reflection_color) return std::nullopt;
+  return textured(c, *m.reflection_color, m.reflection_color_texture, place);
+}
+
 /// Of light that passes, if it is not the colour.
 std::optional<Color> filter_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
   if (!m.filter) return std::nullopt;
@@ -125,10 +132,20 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
 }
 
 PhongValues phong_values(const RenderContext& c, const Material& m, const TexturePlace& place) {
-  PhongValues values{m.ambient,    m.diffuse,      m.specular,          m.phong,
-                     m.reflection, m.transparency, m.reflection_grazing};
-  float* const at[] = {&values.ambient,    &values.diffuse,      &values.specular,          &values.phong,
-                       &values.reflection, &values.transparency, &values.reflection_grazing};
+  PhongValues values{
+      m.ambient,    m.diffuse,        m.specular, m.phong, m.reflection, m.transparency, m.reflection_grazing,
+      m.brilliance, m.specular_blinn, m.blinn,    m.grain};
+  float* const at[] = {&values.ambient,
+                       &values.diffuse,
+                       &values.specular,
+                       &values.phong,
+                       &values.reflection,
+                       &values.transparency,
+                       &values.reflection_grazing,
+                       &values.brilliance,
+                       &values.specular_blinn,
+                       &values.blinn,
+                       &values.grain};
   for (std::size_t i = 0; i < std::size(kPhongNumbers); ++i)
     *at[i] = textured(c, *at[i], m.*kPhongNumbers[i].texture, kPhongNumbers[i].range, place);
   return values;
@@ -467,10 +484,18 @@ void set_frame(const ShadingPoint& p, const HitFrame& hit, PrincipledParameters&
 
 }  // namespace
 
+/// The material of the side that a ray meets.
+static const Material& material_of_side(const RenderContext& context, const Ray& ray,
+                                        const SurfaceInteraction& found) {
+  const Material& front = material_at(*context.world, found);
+  if (front.back == kNoId || !(dot(ray.direction, found.geometric_normal) > 0)) return front;
+  return context.world->materials[front.back];
+}
+
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& found) {
   ShadingPoint p;
-  p.material = &material_at(*context.world, found);
+  p.material = &material_of_side(context, ray, found);
   const bool by_path = traits(context.settings.kind).traces_paths;
   const bool textured_here = has_textures(*p.material) || (by_path && is_stretched(*p.material));
   p.surface = textured_here ? surface_interaction(*context.world->accel, ray, hit) : found;
@@ -496,6 +521,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.emission = textured(context, m.emission, m.emission_texture, place);
   p.values = phong_values(context, m, place);
   p.filter = filter_at(context, m, place);
+  p.reflection_color = reflection_color_at(context, m, place);
   p.opacity = opacity_at(context, m, place);
   p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
   if ((textured_here || by_path) && shows_principled(context, m)) set_principled(context, place, p);
@@ -538,7 +564,7 @@ ShownSurface shown_surface(const ShadingPoint& p) {
 
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& found) {
-  const Material& m = material_at(*context.world, found);
+  const Material& m = material_of_side(context, ray, found);
   if (has_textures(m)) return shown_surface(shading_point(context, ray, hit, history, found));
   return {found, m.color, opacity_at(context, m, {})};
 }

@@ -33,6 +33,7 @@ struct ShadingPoint {
   float ior = 1.5f;                                ///< inside relative to outside; textures included
   PhongValues values{};                            ///< textures included
   std::optional<Color> filter;                     ///< of Material; textures included
+  std::optional<Color> reflection_color;           ///< likewise
   float opacity = 1;                               ///< fraction that is surface; the rest is a hole
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };

@@ -324,11 +324,12 @@ Numbers FunctionCaller::call(const Function& function, std::span<const double> a
   }
 }
 
-double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries) {
+double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries,
+                std::uint64_t most_steps) {
   std::uint64_t steps = 0;
   const Document document;
   try {
-    return Evaluation(queries, steps, std::uint64_t{1} << 40, document).value(function, arguments).v[0];
+    return Evaluation(queries, steps, most_steps, document).value(function, arguments).v[0];
   } catch (const NoValue& problem) {
     throw Error(problem.message);
   }

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
-#include "core/precise_math.h"
+#include "io/pov/formula_text.h"
+#include "io/pov/noise_functions.h"
+#include "io/pov/winding_functions.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett::pov {
@@ -30,13 +31,17 @@ struct Internal {
 // surface after Apery, with the constants and signs that the values of POV-Ray 3.7 show.
 constexpr double kField = 10;
 constexpr Internal kInternal[] = {
-    // f_algbr_cyl2, 3 and 4
+    // f_algbr_cyl1, 2, 3 and 4
+    {0, 8, "$3 * ($1^2 + abs($0)^3 - $0^2)", kField, true},
     {1, 8, "-$3 * (2 * $0^4 - 3 * $0^2 * $1 + $1^2 - 2 * $1^3 + $1^4)", kField, true},
     {2, 8, "-$3 * ($0^4 + $0^2 * $1^2 - 2 * $0^2 * $1 - $0 * $1^2 + $1^2)", kField, true},
     {3, 8, "-$3 * (($0^2 + $1^2)^2 + 3 * $0^2 * $1 - $1^3)", kField, true},
-    // f_bicorn, f_bifolia, f_blob2
+    // f_bicorn, f_bifolia, f_blob, f_blob2
     {4, 5, "-$3 * (($0^2 + $2^2 + 2 * $4 * $1 - $4^2)^2 - $1^2 * ($4^2 - $0^2 - $2^2))", kField},
     {5, 5, "-$3 * (($0^2 + $1^2 + $2^2)^2 - $4 * ($0^2 + $2^2) * $1)", kField},
+    {6, 8,
+     "-$4 * max(0, 1 - $5^2 * (($0 + $3 / 2)^2 + $1^2 + $2^2))^2 - "
+     "$6 * max(0, 1 - $7^2 * (($0 - $3 / 2)^2 + $1^2 + $2^2))^2"},
     {7, 7, "$6 - $5 * (exp(-$4 * ($0^2 + $1^2 + $2^2)) + exp(-$4 * (($0 - $3)^2 + $1^2 + $2^2)))"},
     // f_boy_surface
     {8, 5,
@@ -46,6 +51,14 @@ constexpr Internal kInternal[] = {
      "(-81 * ($0^2 + $1^2)^2 - 72 * $2^2 * ($0^2 + $1^2) + 108 * sqrt(2) * $0 * $2 * ($0^2 - 3 * $1^2) + "
      "4 * $2^4))",
      kField},
+    // f_comma: a ball, and half a ring that becomes thinner
+    {9, 4,
+     "min(sqrt(($0 - $3 / 2)^2 + $1^2 + $2^2) - $3 / 2, max(hypot(hypot($0 + $3 / 4, $2) - 0.75 * $3, $1) - "
+     "$3 / 2 * cos(atan2($2, $0) / 2), -$2))"},
+    // f_cross_ellipsoids, whose three ellipsoids are joined
+    {10, 7,
+     "$6 - $5 * exp(-$4 * min($0^2 + $3 * ($1^2 + $2^2), $1^2 + $3 * ($0^2 + $2^2), "
+     "$2^2 + $3 * ($0^2 + $1^2)))"},
     // f_crossed_trough, f_cubic_saddle, f_cushion, f_devils_curve and f_devils_curve_2d
     {11, 4, "$3 * ($0^2 * $2^2 - $1)", kField},
     {12, 4, "-$3 * ($0^3 - $1^3 - $2)", kField},
@@ -63,6 +76,15 @@ constexpr Internal kInternal[] = {
      kField},
     // f_ellipsoid
     {17, 6, "sqrt(($3 * $0)^2 + ($4 * $1)^2 + ($5 * $2)^2)"},
+    // f_enneper, without its constants, and with a z of at least 0.2 in the denominators
+    {18, 4,
+     "$3 * (6 * (($1^2 - $0^2) / (4 * (0.2 + ($2 - 0.2) * max(0, sign(abs($2) - 0.2)))))^2 - "
+     "(($1^2 - $0^2) / (2 * (0.2 + ($2 - 0.2) * max(0, sign(abs($2) - 0.2)))) + 2 / 9 * $2^2)^3)",
+     kField},
+    // f_flange_cover
+    {19, 7,
+     "$6 - $5 * (exp(-$4 * ($0^2 + $3 * ($1^2 + $2^2))) + exp(-$4 * ($1^2 + $3 * ($0^2 + $2^2))) + "
+     "exp(-$4 * ($2^2 + $3 * ($0^2 + $1^2))))"},
     // f_folium_surface and f_folium_surface_2d, f_glob, f_heart
     {20, 6, "$3 * (($1^2 + $2^2) * (1 + ($5 - 4 * $4) * $0) + ($5 + 1) * $0^2)", kField},
     {21, 9, "-$3 * ($1^2 * (1 + ($5 - 4 * $4) * $0) + ($5 + 1) * $0^2)", kField, true},
@@ -74,6 +96,10 @@ constexpr Internal kInternal[] = {
      "-$3 * ($0^4 + 2 * $0^2 * $1^2 - 2 * $0^2 * $2^2 - 2 * ($4^2 + $5^2) * $0^2 + $1^4 - 2 * $1^2 * $2^2 + "
      "2 * ($4^2 - $5^2) * $1^2 + $2^4 + 2 * ($4^2 + $5^2) * $2^2 + ($4^2 - $5^2)^2)",
      kField},
+    // f_isect_ellipsoids, whose three ellipsoids intersect
+    {32, 7,
+     "$6 - $5 * exp(-$4 * max($0^2 + $3 * ($1^2 + $2^2), $1^2 + $3 * ($0^2 + $2^2), "
+     "$2^2 + $3 * ($0^2 + $1^2)))"},
     // f_kampyle_of_eudoxus and f_kampyle_of_eudoxus_2d, f_klein_bottle, f_kummer_surface_v1 and _v2
     {33, 6, "-$3 * ($1^2 + $2^2 - $5^2 * $0^4 + $4^2 * $5^2 * $0^2)", kField},
     {34, 9, "-$3 * ($1^2 - $5^2 * $0^4 + $4 * $5^3 * $0^2)", kField, true},
@@ -109,15 +135,20 @@ constexpr Internal kInternal[] = {
     {49, 4, "$3 * ($0^4 - $0^3 + $1^2 + $2^2)", kField},
     {50, 10, "-$3 * ($1^2 - $6^2 * $0^3 * ($4 + $5 * $0))", kField, true},
     {51, 8, "hypot($0, $2) - ($3 + $4 * $1 + $5 * $1^2 + $6 * $1^3 + $7 * $1^4)"},
+    // f_quantum: the density of the orbital 3 d z^2 of hydrogen about y
+    {53, 3, "1.2 - 1.6 * (2 * $1^2 - $0^2 - $2^2)^2 * exp(-4 / 3 * sqrt($0^2 + $1^2 + $2^2))"},
     // f_quartic_paraboloid, f_quartic_saddle, f_quartic_cylinder
     {54, 4, "-$3 * ($0^4 + $2^4 - $1)", kField},
     {55, 4, "-$3 * ($0^4 - $2^4 - $1)", kField},
     {56, 6, "-$3 * (($0^2 + $2^2) * $1^2 + $5^2 * ($0^2 + $2^2) - $4^2 * $5^2)", kField},
-    // f_r, f_rounded_box, f_sphere, f_spikes_2d, f_steiners_roman
+    // f_r, f_rounded_box, f_sphere, f_spikes, f_spikes_2d, f_steiners_roman
     {57, 3, "sqrt($0^2 + $1^2 + $2^2)"},
     {60, 7,
      "sqrt(max(0, abs($0) - $4 + $3)^2 + max(0, abs($1) - $5 + $3)^2 + max(0, abs($2) - $6 + $3)^2) - $3"},
     {61, 4, "sqrt($0^2 + $1^2 + $2^2) - $3"},
+    {62, 8,
+     "$5 * (exp(-$4 * ($0^2 + $3 * ($1^2 + $2^2))) + exp(-$4 * ($1^2 + $3 * ($0^2 + $2^2))) + "
+     "exp(-$4 * ($2^2 + $3 * ($0^2 + $1^2))) - $7 * exp(-$6 * ($0^2 + $1^2 + $2^2)))"},
     {63, 7, "$1 - $3 * cos($4 * $0) * cos($5 * $2) * exp(-$6 * ($0^2 + $2^2))"},
     {65, 4, "-$3 * ($0^2 * $1^2 + $0^2 * $2^2 + $1^2 * $2^2 + $0 * $1 * $2)", kField},
     // f_strophoid and f_strophoid_2d, f_superellipsoid, f_th, f_torus, f_torus2
@@ -137,79 +168,6 @@ constexpr Internal kInternal[] = {
     {75, 9, "-$3 * ($0^2 * $1 + $4^2 * $1 - $5)", kField, true},
 };
 
-/// `text` with the operands in the place of their numbers, in parentheses.
-std::string filled(std::string_view text, const std::vector<std::string>& operands) {
-  std::string out = "(";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '$') {
-      out += text[i];
-      continue;
-    }
-    out += '(' + operands[static_cast<std::size_t>(text[++i] - '0')] + ')';
-  }
-  return out + ')';
-}
-
-/// The value of an operand that is a number, perhaps in parentheses.
-std::optional<double> constant(std::string_view text) {
-  while (text.size() > 1 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-/// f_helix1: tubes that wind about the y axis, each a turn of 2 pi / $4 up, from $3 places around it.
-/// Across it lies a superellipse: a circle for $8 of 1.
-std::string helix(const std::vector<std::string>& operands) {
-  std::vector<std::string> o = operands;
-  // Where a place is in the turn of the tube that is nearest, from -pi to pi.
-  const std::string turn = filled("$3 * ($4 * $1 + atan2($2, $0))", o);
-  const std::string part = fmt::format("({0} - 2 * pi * floor({0} / (2 * pi)) - pi)", turn);
-  const std::string up = filled("$0 / ($1 * $2 * $3)", {part, o[3], o[4], o[7]});
-  const std::string out = filled("hypot($0, $2) - $6", o);
-  const std::string angle = filled("$9 * pi / 180", o);
-  const std::string u = filled("$0 * cos($2) - $1 * sin($2)", {out, up, angle}),
-                    v = filled("$0 * sin($2) + $1 * cos($2)", {out, up, angle});
-  return filled("pow(pow(abs($0), 2 / $2) + pow(abs($1), 2 / $2), $2 / 2) - $3", {u, v, o[8], o[5]});
-}
-
-constexpr std::uint32_t kHelix = 25;
-constexpr std::size_t kHelixOperands = 10;
-
-/// f_noise3d, and f_noise_generator, whose fourth operand chooses between kinds of noise.
-std::string unit_noise(const std::vector<std::string>& operands) {
-  return filled("0.5 + 0.5 * noise($0, $1, $2)", operands);
-}
-
-/// f_ridged_mf: a ridged multifractal (F. K. Musgrave in D. Ebert et al.: Texturing and modeling), of the
-/// exponent $3, the lacunarity $4, $5 octaves, the offset $6 and the gain $7. Nothing if the three numbers
-/// that shape the octaves are none here.
-std::optional<std::string> ridged(const std::vector<std::string>& o) {
-  const std::optional<double> exponent = constant(o[3]), lacunarity = constant(o[4]),
-                              octaves = constant(o[5]);
-  if (!exponent || !lacunarity || !octaves || !(*lacunarity > 0) || !(std::abs(*octaves) < 30))
-    return std::nullopt;
-  std::string sum, signal;
-  double scale = 1;
-  for (int k = 0; k < std::max(1, static_cast<int>(*octaves)); ++k, scale *= *lacunarity) {
-    const std::string number = fmt::format("{}", scale);
-    const std::string own =
-        filled("($3 - abs(noise($0 * $4, $1 * $4, $2 * $4)))^2", {o[0], o[1], o[2], o[6], number});
-    // Where the octave before is low, so is this one.
-    signal = k == 0 ? own : filled("$0 * max(0, min(1, $1 * $2))", {own, signal, o[7]});
-    const double weight = precise::pow(scale, -*exponent);
-    if (!std::isfinite(weight) || !std::isfinite(scale)) return std::nullopt;
-    sum += fmt::format("{}{} * {}", k == 0 ? "" : " + ", signal, weight);
-    // Texts that are too long are refused in any case.
-    if (sum.size() > kMaxExpressionLength) return sum;
-  }
-  return '(' + sum + ')';
-}
-
-constexpr std::uint32_t kRidged = 59;
-constexpr std::size_t kRidgedOperands = 9;
-
 const Internal* find(std::uint32_t number) {
   const auto* const found = std::ranges::find(kInternal, number, &Internal::number);
   return found != std::end(kInternal) ? found : nullptr;
@@ -218,18 +176,8 @@ const Internal* find(std::uint32_t number) {
 }  // namespace
 
 std::optional<std::string> internal_text(std::uint32_t number, const std::vector<std::string>& operands) {
-  if (number == kHelix) {
-    if (operands.size() < kHelixOperands) return std::nullopt;
-    return helix(operands);
-  }
-  if (number == kNoiseFunction || number == kNoiseGeneratorFunction) {
-    if (operands.size() < 3) return std::nullopt;
-    return unit_noise(operands);
-  }
-  if (number == kRidged) {
-    if (operands.size() < kRidgedOperands) return std::nullopt;
-    return ridged(operands);
-  }
+  if (std::optional<std::string> text = winding_text(number, operands)) return text;
+  if (std::optional<std::string> text = noise_text(number, operands)) return text;
   const Internal* const known = find(number);
   if (known == nullptr || operands.size() < known->operands) return std::nullopt;
   if (!known->curve) return filled(known->text, operands);
@@ -262,7 +210,7 @@ std::optional<double> internal_value(std::uint32_t number, std::span<const doubl
   }
   if (known != nullptr && std::abs(value) > known->limit) value = std::copysign(known->limit, value);
   // The field of these is bounded by an operand, too.
-  if (number >= 1 && number <= 3 && !std::isnan(value))
+  if (number <= 3 && !std::isnan(value))
     value = std::clamp(value, -std::abs(operands[4]), std::abs(operands[4]));
   return value;
 }

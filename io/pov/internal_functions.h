@@ -10,9 +10,6 @@
 
 namespace oktett::pov {
 
-/// The numbers of f_noise3d and of f_noise_generator.
-inline constexpr std::uint32_t kNoiseFunction = 76, kNoiseGeneratorFunction = 78;
-
 /// The function as an expression (kernels/functions/expression.h) of its operands, which are expressions,
 /// too. Nothing if it has no formula here, or if the operands are too few. Functions with a field strength
 /// have no bounds, which do not move surfaces. Noise is that of expressions, of the same kind as POV-Ray's,

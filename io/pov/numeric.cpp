@@ -8,7 +8,7 @@
 namespace oktett::pov {
 namespace {
 
-using Arguments = std::span<const double>;
+using Values = std::span<const double>;
 
 /// Whole numbers of 64 bits, as far as there are any.
 std::int64_t whole(double x) {
@@ -16,12 +16,12 @@ std::int64_t whole(double x) {
   return static_cast<std::int64_t>(x);
 }
 
-double select(Arguments a) {
+double select(Values a) {
   if (a.size() == 3) return a[0] < 0 ? a[1] : a[2];
   return a[0] < 0 ? a[1] : a[0] == 0 ? a[2] : a[3];
 }
 
-double both(Arguments a, std::int64_t (*combine)(std::int64_t, std::int64_t)) {
+double both(Values a, std::int64_t (*combine)(std::int64_t, std::int64_t)) {
   std::int64_t result = whole(a[0]);
   for (const double x : a.subspan(1)) result = combine(result, whole(x));
   return static_cast<double>(result);
@@ -31,42 +31,42 @@ constexpr std::size_t kMany = 1000;
 
 // In alphabetical order.
 constexpr NumericFunction kFunctions[] = {
-    {"abs", 1, 1, [](Arguments a) { return std::abs(a[0]); }},
-    {"acos", 1, 1, [](Arguments a) { return std::acos(std::clamp(a[0], -1.0, 1.0)); }},
-    {"acosh", 1, 1, [](Arguments a) { return std::acosh(a[0]); }},
-    {"asin", 1, 1, [](Arguments a) { return std::asin(std::clamp(a[0], -1.0, 1.0)); }},
-    {"asinh", 1, 1, [](Arguments a) { return std::asinh(a[0]); }},
-    {"atan", 1, 1, [](Arguments a) { return std::atan(a[0]); }},
-    {"atan2", 2, 2, [](Arguments a) { return std::atan2(a[0], a[1]); }},
-    {"atanh", 1, 1, [](Arguments a) { return std::atanh(a[0]); }},
+    {"abs", 1, 1, [](Values a) { return std::abs(a[0]); }},
+    {"acos", 1, 1, [](Values a) { return std::acos(std::clamp(a[0], -1.0, 1.0)); }},
+    {"acosh", 1, 1, [](Values a) { return std::acosh(a[0]); }},
+    {"asin", 1, 1, [](Values a) { return std::asin(std::clamp(a[0], -1.0, 1.0)); }},
+    {"asinh", 1, 1, [](Values a) { return std::asinh(a[0]); }},
+    {"atan", 1, 1, [](Values a) { return std::atan(a[0]); }},
+    {"atan2", 2, 2, [](Values a) { return std::atan2(a[0], a[1]); }},
+    {"atanh", 1, 1, [](Values a) { return std::atanh(a[0]); }},
     {"bitwise_and", 2, kMany,
-     [](Arguments a) { return both(a, [](std::int64_t p, std::int64_t q) { return p & q; }); }},
+     [](Values a) { return both(a, [](std::int64_t p, std::int64_t q) { return p & q; }); }},
     {"bitwise_or", 2, kMany,
-     [](Arguments a) { return both(a, [](std::int64_t p, std::int64_t q) { return p | q; }); }},
+     [](Values a) { return both(a, [](std::int64_t p, std::int64_t q) { return p | q; }); }},
     {"bitwise_xor", 2, kMany,
-     [](Arguments a) { return both(a, [](std::int64_t p, std::int64_t q) { return p ^ q; }); }},
-    {"ceil", 1, 1, [](Arguments a) { return std::ceil(a[0]); }},
-    {"cos", 1, 1, [](Arguments a) { return std::cos(a[0]); }},
-    {"cosh", 1, 1, [](Arguments a) { return std::cosh(a[0]); }},
-    {"degrees", 1, 1, [](Arguments a) { return a[0] * (180 / std::numbers::pi); }},
-    {"div", 2, 2, [](Arguments a) { return std::trunc(a[0] / a[1]); }},
-    {"exp", 1, 1, [](Arguments a) { return std::exp(a[0]); }},
-    {"floor", 1, 1, [](Arguments a) { return std::floor(a[0]); }},
-    {"int", 1, 1, [](Arguments a) { return std::trunc(a[0]); }},
-    {"ln", 1, 1, [](Arguments a) { return std::log(a[0]); }},
-    {"log", 1, 1, [](Arguments a) { return std::log10(a[0]); }},
-    {"max", 1, kMany, [](Arguments a) { return *std::max_element(a.begin(), a.end()); }},
-    {"min", 1, kMany, [](Arguments a) { return *std::min_element(a.begin(), a.end()); }},
-    {"mod", 2, 2, [](Arguments a) { return std::fmod(a[0], a[1]); }},
-    {"pow", 2, 2, [](Arguments a) { return std::pow(a[0], a[1]); }},
-    {"radians", 1, 1, [](Arguments a) { return a[0] * (std::numbers::pi / 180); }},
+     [](Values a) { return both(a, [](std::int64_t p, std::int64_t q) { return p ^ q; }); }},
+    {"ceil", 1, 1, [](Values a) { return std::ceil(a[0]); }},
+    {"cos", 1, 1, [](Values a) { return std::cos(a[0]); }},
+    {"cosh", 1, 1, [](Values a) { return std::cosh(a[0]); }},
+    {"degrees", 1, 1, [](Values a) { return a[0] * (180 / std::numbers::pi); }},
+    {"div", 2, 2, [](Values a) { return std::trunc(a[0] / a[1]); }},
+    {"exp", 1, 1, [](Values a) { return std::exp(a[0]); }},
+    {"floor", 1, 1, [](Values a) { return std::floor(a[0]); }},
+    {"int", 1, 1, [](Values a) { return std::trunc(a[0]); }},
+    {"ln", 1, 1, [](Values a) { return std::log(a[0]); }},
+    {"log", 1, 1, [](Values a) { return std::log10(a[0]); }},
+    {"max", 1, kMany, [](Values a) { return *std::max_element(a.begin(), a.end()); }},
+    {"min", 1, kMany, [](Values a) { return *std::min_element(a.begin(), a.end()); }},
+    {"mod", 2, 2, [](Values a) { return std::fmod(a[0], a[1]); }},
+    {"pow", 2, 2, [](Values a) { return std::pow(a[0], a[1]); }},
+    {"radians", 1, 1, [](Values a) { return a[0] * (std::numbers::pi / 180); }},
     {"select", 3, 4, select},
-    {"sin", 1, 1, [](Arguments a) { return std::sin(a[0]); }},
-    {"sinh", 1, 1, [](Arguments a) { return std::sinh(a[0]); }},
-    {"sqr", 1, 1, [](Arguments a) { return a[0] * a[0]; }},
-    {"sqrt", 1, 1, [](Arguments a) { return std::sqrt(a[0]); }},
-    {"tan", 1, 1, [](Arguments a) { return std::tan(a[0]); }},
-    {"tanh", 1, 1, [](Arguments a) { return std::tanh(a[0]); }},
+    {"sin", 1, 1, [](Values a) { return std::sin(a[0]); }},
+    {"sinh", 1, 1, [](Values a) { return std::sinh(a[0]); }},
+    {"sqr", 1, 1, [](Values a) { return a[0] * a[0]; }},
+    {"sqrt", 1, 1, [](Values a) { return std::sqrt(a[0]); }},
+    {"tan", 1, 1, [](Values a) { return std::tan(a[0]); }},
+    {"tanh", 1, 1, [](Values a) { return std::tanh(a[0]); }},
 };
 
 }  // namespace

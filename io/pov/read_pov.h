@@ -94,8 +94,10 @@ Document read_pov(const std::string& path, const ReadOptions& options = {});
 /// The option of commands that allows #fopen, for messages.
 inline constexpr const char* kFileFolderOption = "--files";
 
-/// The value of a function with one value, as expressions of the scene compute it.
-double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries);
+/// The value of a function with one value, as expressions of the scene compute it. Throws Error if it has
+/// none, or takes more steps.
+double evaluate(const Function& function, std::span<const double> arguments, ObjectQueries* queries,
+                std::uint64_t most_steps = std::uint64_t{1} << 40);
 
 /// The value of a spline. POV-Ray's cubic splines have the mean slope of both neighbours at each point, and
 /// stay constant before the second and behind the last point but one; all others stay constant outside.

@@ -44,6 +44,12 @@ void Interpreter::run(const std::string& path) {
     const Token& token = peek();
     const bool is_word = token.kind == Token::Kind::word;
     if (!is_word) fail_expected("an object or another statement", token);
+    if (token.name->keyword == "default"_kw) {
+      // As a directive, without its '#'.
+      const Place where = take().where;
+      set_default(where);
+      continue;
+    }
     parse_element(document_.statements, depth);
   }
   document_.version = version_;

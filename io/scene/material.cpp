@@ -126,6 +126,8 @@ struct PhongKeys {
   PrincipledMaterial rough{};  ///< with `roughness` and `metallic`
   Color filter{1, 1, 1};
   std::uint32_t filter_texture = kNoId;
+  Color reflection_color{1, 1, 1};
+  std::uint32_t reflection_color_texture = kNoId;
 
   void describe(auto& p) {
     p.field("color", Textured<Color>{m.color, m.color_texture}, "of diffuse and ambient light");
@@ -133,6 +135,8 @@ struct PhongKeys {
                "colour of light that passes through; `color` if left out");
     p.field("specular_color", Textured<Color>{m.specular_color, m.specular_texture},
             "of highlights and mirror reflections");
+    p.optional("reflection_color", Textured<Color>{reflection_color, reflection_color_texture},
+               "of mirror reflections; `specular_color` if left out");
     for (const PhongNumber& number : kPhongNumbers)
       p.field(number.name, Textured<float>{m.*number.value, m.*number.texture}, number.range, number.meaning);
     p.field("ior", Textured<float>{m.ior, m.ior_texture}, kPositive,
@@ -150,10 +154,31 @@ struct PhongKeys {
   }
 };
 
+/// The index into Scene::materials by the name of one that is known already.
+struct MaterialName {
+  std::uint32_t& index;
+};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, MaterialName& material) {
+  if (node.kind != YamlKind::scalar)
+    throw Error(node.where(), "expected the name of a material, found " + node.describe());
+  const std::string name = load.values.text(node);
+  const NameTable::Entry* const entry = load.materials.find(name);
+  if (entry == nullptr) load.materials.fail_unknown(name, node.where(), "material");
+  if (entry->index >= load.scene.materials.size())
+    throw Error(node.where(), "material " + quote(name) + " must stand before what it is the back of");
+  if (load.scene.materials[entry->index].back != kNoId)
+    throw Error(node.where(), "material " + quote(name) + " has a back itself");
+  material.index = entry->index;
+}
+
+std::string schema_of(Schema&, const Range&, const MaterialName&) { return Schema::text(); }
+
 /// The keys of all materials.
 struct CommonKeys {
   Material& m;
   std::uint32_t priority = 0;
+  MaterialName back{m.back};
   Color attenuation{1, 1, 1};
   double distance = 1;
 
@@ -171,6 +196,7 @@ struct CommonKeys {
     p.field("bump_scale", m.bump_scale, "multiplies the heights of `map_bump`");
     p.field("surface", m.surface, "false: an invisible boundary of the interior");
     p.optional("interior", MediumName{m.interior}, "the medium in solids of this material");
+    p.optional("back", back, "name of a material further up: what the other side shows");
     p.optional("priority", priority, whole(0, kMostPriority),
                "where solids overlap, the highest fills the space");
     p.optional("attenuation_color", attenuation, "instead of `interior`: what is left of white light");
@@ -267,9 +293,11 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& 
   load.warn_if_unused(fields, "map_emission", dark, "'emission', which it multiplies, is black");
   load.warn_if_unused(fields, "emits", dark, "'emission' is black");
   load.warn_if_unused(fields, "light_group", dark, "'emission' is black");
-  const bool shines =
-      m.principled || m.specular > 0 || m.reflection > 0 || m.reflection_varies || m.transparency > 0;
+  const bool mirrors = m.reflection > 0 || m.reflection_varies;
+  const bool shines = m.principled || m.specular > 0 || m.specular_blinn > 0 || mirrors || m.transparency > 0;
   load.warn_if_unused(fields, "reflection_falloff", !m.reflection_varies, "there is no 'reflection_grazing'");
+  load.warn_if_unused(fields, "reflection_color", !mirrors, "'reflection' is 0");
+  load.warn_if_unused(fields, "blinn", m.specular_blinn == 0, "'specular_blinn' is 0");
   load.warn_if_unused(fields, "map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
   load.warn_if_unused(fields, "normal_scale", m.normal_texture == kNoId, "there is no 'map_normal'");
   load.warn_if_unused(fields, "bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
@@ -281,6 +309,9 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   MaterialKeys keys{{m}, {m}};
   const Fields fields = read_described(load, node, keys.kMap, keys);
   if (fields["filter"]) m.filter = keys.phong.filter, m.filter_texture = keys.phong.filter_texture;
+  if (fields["reflection_color"])
+    m.reflection_color = keys.phong.reflection_color,
+    m.reflection_color_texture = keys.phong.reflection_color_texture;
   m.reflection_varies = fields["reflection_grazing"] != nullptr;
   finish_roughness(fields, keys.phong.rough, m);
   refuse_normal_pattern(load, fields["map_normal"], m.normal_texture);

@@ -10,6 +10,7 @@
 #include "accel/accel.h"
 #include "accel/point_query.h"
 #include "io/pov/internal_functions.h"
+#include "io/pov/noise_functions.h"
 #include "io/pov/translate/translate.h"
 #include "io/scene/readers.h"
 #include "render/geometry.h"
@@ -179,7 +180,11 @@ const PovQueries::Surfaces& PovQueries::surfaces(Asked& asked, bool as_solid) {
 
 std::unique_ptr<PovQueries::Surfaces> PovQueries::make_surfaces(const Asked& asked, bool as_solid) {
   steps_ += 500 + asked.weight * 2;
-  const pov::TranslatedObject object = pov::translate_object(*document_, asked.block, as_solid);
+  // What the object asks while it is made must not take the place of what is kept here.
+  PovQueries others;
+  others.begin(*document_);
+  const pov::TranslatedObject object = pov::translate_object(*document_, asked.block, as_solid, &others);
+  steps_ += others.take_steps();
   warn(object.scene.warnings);
   auto made = std::make_unique<Surfaces>();
   made->is_there = object.is_there, made->negative = object.negative, made->extent = object.extent;

@@ -35,7 +35,8 @@ pov::TranslatedScene read_pov_tree(const std::string& path, const Definitions& d
       options.definitions[name] = text;
   }
   const pov::Document document = pov::read_pov(path, options);
-  pov::TranslatedScene scene = pov::translate(document, {film.width, film.height, mesh_prefix});
+  queries.begin(document);
+  pov::TranslatedScene scene = pov::translate(document, {film.width, film.height, mesh_prefix, &queries});
   for (Warning& warning : queries.take_warnings()) {
     const auto is_same = [&](const Warning& other) { return to_string(other) == to_string(warning); };
     if (std::ranges::none_of(scene.warnings, is_same)) scene.warnings.push_back(std::move(warning));

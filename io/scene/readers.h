@@ -136,6 +136,9 @@ std::string media_schema(Schema& schema);
 /// Adds the fogs in the list `fog` to the scene.
 void read_fogs(SceneLoad& load, const YamlNode& fog);
 std::string fogs_schema(Schema& schema);
+/// Adds the rainbows in the list `rainbow` to the scene.
+void read_rainbows(SceneLoad& load, const YamlNode& rainbow);
+std::string rainbows_schema(Schema& schema);
 /// Adds a warning if the scene is path traced and has fog, which it does not show then.
 void warn_of_fog(Scene& scene);
 /// Sets what fills the space around the scene, by the name of a medium.

@@ -171,6 +171,7 @@ struct SceneKeys {
     p.optional("medium", Section{read_outer_medium, medium_schema},
                "name of the medium outside of all solids");
     p.optional("fog", Section{read_fogs, fogs_schema}, "`whitted`: fog outside of solids");
+    p.optional("rainbow", Section{read_rainbows, rainbows_schema}, "`whitted`: rainbows outside of solids");
     p.optional("materials", Section{define_materials, materials_schema, true}, "materials by name");
     p.optional("lights", Section{read_lights, lights_schema}, "two by the camera if left out");
     p.optional("define", Section{define_prototypes, prototypes_schema, true}, "prototypes by name");

@@ -31,6 +31,10 @@ struct PhongParameters {
   float transparency = 0;         ///< weight of smooth glass
   std::optional<Color> filter{};  ///< of light that passes through; not given: color
   float ior = 1.5f;               ///< index of refraction behind the front side relative to before it, > 0
+  float brilliance = 1;           ///< power of the cosine of diffuse light, [0, inf)
+  float specular_blinn = 0;       ///< weight of the highlight about the halfway direction
+  float blinn = 128;              ///< its exponent, [0, inf)
+  std::optional<Color> mirror_color{};  ///< not given: specular_color
 };
 
 /// What one side of a surface needs, whatever the directions.
@@ -40,33 +44,38 @@ struct PhongSurface {
   OKTETT_INLINE PhongSurface(const PhongParameters& parameters, bool front)
       : filter(limited(parameters.filter.value_or(parameters.color), 0, kMost)),
         exponent(limited(parameters.phong, 0, kMost)),
+        brilliance(limited(parameters.brilliance, 0, kMost)),
+        blinn(limited(parameters.blinn, 0, kMost)),
         transparency(limited(parameters.transparency, 0, kMost)) {
     const Vec3d specular_color = limited(parameters.specular_color, 0, kMost);
     diffuse = limited(parameters.color, 0, kMost) * limited(parameters.diffuse, 0, kMost);
     highlight = specular_color * limited(parameters.specular, 0, kMost);
-    mirror = specular_color * limited(parameters.reflection, 0, kMost);
+    halfway = specular_color * limited(parameters.specular_blinn, 0, kMost);
+    mirror = (parameters.mirror_color ? limited(*parameters.mirror_color, 0, kMost) : specular_color) *
+             limited(parameters.reflection, 0, kMost);
     const double ior = limited(parameters.ior, 1e-3, 1e3);
     eta = static_cast<float>(front ? ior : 1 / ior);
-    only_diffuse =
-        max_component(diffuse) > 0 && highlight == Vec3d{} && mirror == Vec3d{} && transparency == 0;
+    only_diffuse = max_component(diffuse) > 0 && highlight == Vec3d{} && halfway == Vec3d{} &&
+                   mirror == Vec3d{} && transparency == 0 && brilliance == 1;
   }
 
   static constexpr double kMost = 1e9;
-  Vec3d filter, diffuse, highlight, mirror;
-  double exponent = 0, transparency = 0, eta = 1;
+  Vec3d filter, diffuse, highlight, halfway, mirror;
+  double exponent = 0, brilliance = 1, blinn = 0, transparency = 0, eta = 1;
   bool only_diffuse = false;  ///< all other lobes are black
 
   /// Whether its lobes are black but in finitely many directions.
-  bool only_delta() const { return diffuse == Vec3d{} && highlight == Vec3d{}; }
+  bool only_delta() const { return diffuse == Vec3d{} && highlight == Vec3d{} && halfway == Vec3d{}; }
   /// Whether light may pass to the other side.
   bool transmits() const { return transparency > 0; }
 };
 
 /// The sum of (Phong 1975, each light as it is lit by emitters divided by pi)
-/// - color * diffuse * cos(wi) / pi,
+/// - color * diffuse * cos(wi)^brilliance / pi,
 /// - specular_color * specular * max(0, r.wi)^phong / pi, r the mirrored viewer. As light is not
 ///   foreshortened here, this lobe is not reciprocal;
-/// - a mirror: specular_color * reflection;
+/// - specular_color * specular_blinn * max(0, n.h)^blinn / pi, h halfway between wi and the viewer, likewise;
+/// - a mirror: mirror_color * reflection;
 /// - glass: transparency, of which Fresnel's fraction is reflected and the rest, times filter, refracted.
 ///
 /// In lanes of doubles D, for viewers of the same surface.
@@ -83,8 +92,9 @@ class PhongLobes {
     mirrored_viewer_ = {-w.x, -w.y, w.z};
     mirror_ = broadcast<D>(s_->mirror);
     if (s_->transparency > 0) set_glass(w);
-    choice_[kDiffuse] = D(max_component(s_->diffuse));
+    choice_[kDiffuse] = D(max_component(s_->diffuse) * 2 / (s_->brilliance + 1));
     choice_[kHighlight] = D(max_component(s_->highlight) * 2 / (s_->exponent + 1));
+    choice_[kHalfway] = w.z * D(max_component(s_->halfway) * 8 / (s_->blinn + 1));
     choice_[kMirror] = max(max(mirror_.x, mirror_.y), mirror_.z);
     choice_[kRefracted] = max(max(refracted_.x, refracted_.y), refracted_.z);
     choice_.normalize();
@@ -96,13 +106,15 @@ class PhongLobes {
     const D zero(0.0);
     const auto above = wi.z > F(0.0f);
     const Vec3<D> w = unit_lanes(to_double(wi));
-    Vec3<D> value = broadcast<D>(s_->diffuse) * w.z;
-    D pdf = choice_[kDiffuse] * w.z;
+    const D falling = s_->brilliance == 1 ? w.z : power_lanes(min(D(1.0), max(zero, w.z)), s_->brilliance);
+    Vec3<D> value = broadcast<D>(s_->diffuse) * falling;
+    D pdf = choice_[kDiffuse] * D((s_->brilliance + 1) / 2) * falling;
     if (s_->only_diffuse) return lit(above, value, pdf);
+    if (any(choice_[kHalfway] > zero)) add_halfway(w, value, pdf);
     const D cosine = min(D(1.0), dot_lanes(mirrored_viewer_, w));
     const auto shines = (choice_[kHighlight] > zero) & (cosine > zero);
     if (any(shines)) {
-      const D shine = select(shines, power_lanes(select(shines, cosine, D(1.0))), zero);
+      const D shine = select(shines, power_lanes(select(shines, cosine, D(1.0)), s_->exponent), zero);
       value = value + broadcast<D>(s_->highlight) * shine;
       pdf = pdf + choice_[kHighlight] * D((s_->exponent + 1) / 2) * shine;
     }
@@ -115,16 +127,19 @@ class PhongLobes {
     D place = lobe;
     const D chosen = choice_.pick(place);
     const auto diffuse = chosen == D(kDiffuse), highlight = chosen == D(kHighlight);
+    const auto halfway = chosen == D(kHalfway);
     const auto mirror = chosen == D(kMirror), refracted = chosen == D(kRefracted);
     Vec3<D> direction = mirrored_viewer_;
-    if (any(diffuse)) direction = select_lanes(diffuse, cosine_above(x, y), direction);
+    if (any(diffuse)) direction = select_lanes(diffuse, diffuse_direction(x, y, bits(diffuse)), direction);
     if (any(highlight))
-      direction = select_lanes(highlight, highlight_direction(x, y, bits(highlight)), direction);
+      direction = select_lanes(
+          highlight, direction_about(mirrored_viewer_, s_->exponent, x, y, bits(highlight)), direction);
+    if (any(halfway)) direction = select_lanes(halfway, by_halfway(x, y, bits(halfway)), direction);
     if (any(refracted)) direction = select_lanes(refracted, refracted_direction_, direction);
     BsdfSamples<D> sample;
     sample.direction = to_float(direction);
     sample.transmitted = sample.direction.z < F(0.0f);
-    const auto scattered = mask_cast<float>(diffuse | highlight);
+    const auto scattered = mask_cast<float>(diffuse | highlight | halfway);
     sample.found = scattered;
     sample.pdf = F(0.0f);
     sample.weight = {F(0.0f), F(0.0f), F(0.0f)};
@@ -146,7 +161,8 @@ class PhongLobes {
 
   /// The lanes in which `evaluate` is black everywhere.
   typename F::M only_delta() const {
-    return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)));
+    return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)) &
+                            (choice_[kHalfway] == D(0.0)));
   }
 
   bool transmits() const { return s_->transmits(); }
@@ -155,7 +171,7 @@ class PhongLobes {
   void rebind(const PhongSurface& surface) { s_ = &surface; }
 
  private:
-  enum Lobe { kDiffuse, kHighlight, kMirror, kRefracted, kLobes };
+  enum Lobe { kDiffuse, kHighlight, kHalfway, kMirror, kRefracted, kLobes };
 
   /// Value and density times pi, where the light is above the surface.
   static BsdfValues<D> lit(const typename F::M& above, const Vec3<D>& value, const D& pdf) {
@@ -190,33 +206,62 @@ class PhongLobes {
   }
 
   /// `cosine` in [0, 1] to the power of the exponent.
-  D power_lanes(const D& cosine) const {
-    if (by_squaring(s_->exponent)) {
+  static D power_lanes(const D& cosine, double exponent) {
+    if (by_squaring(exponent)) {
       D product(1.0), x = cosine;
-      for (auto n = static_cast<unsigned>(s_->exponent); n != 0; n >>= 1, x = x * x)
+      for (auto n = static_cast<unsigned>(exponent); n != 0; n >>= 1, x = x * x)
         if (n & 1) product = product * x;
       return product;
     }
     double lanes[D::kWidth];
     cosine.store(lanes);
-    for (double& lane : lanes) lane = portable::pow(lane, s_->exponent);
+    for (double& lane : lanes) lane = portable::pow(lane, exponent);
     return D::load(lanes);
   }
 
-  /// Directions about the mirrored viewer, right in the lanes `which`: the cosine to it is
+  /// Directions about the unit vector `axis`, right in the lanes `which`: the cosine to it is
   /// (1 - x)^(1 / (exponent + 1)).
-  Vec3<D> highlight_direction(const D& x, const D& y, unsigned which) const {
+  static Vec3<D> direction_about(const Vec3<D>& axis, double exponent, const D& x, const D& y,
+                                 unsigned which) {
     double lanes[D::kWidth];
     x.store(lanes);
     for (int k = 0; k < D::kWidth; ++k)
-      lanes[k] = which >> k & 1 ? portable::pow(1 - lanes[k], 1 / (s_->exponent + 1)) : 1;
+      lanes[k] = which >> k & 1 ? portable::pow(1 - lanes[k], 1 / (exponent + 1)) : 1;
     const D cosine = D::load(lanes), size = sqrt(max(D(0.0), (D(1.0) - cosine) * (D(1.0) + cosine)));
     D sine_turn, cosine_turn;
     sin_cos_of_turn(y, sine_turn, cosine_turn);
     Vec3<D> tangent, bitangent;
-    basis_lanes(mirrored_viewer_, tangent, bitangent);
-    return unit_lanes(tangent * (size * cosine_turn) + bitangent * (size * sine_turn) +
-                      mirrored_viewer_ * cosine);
+    basis_lanes(axis, tangent, bitangent);
+    return unit_lanes(tangent * (size * cosine_turn) + bitangent * (size * sine_turn) + axis * cosine);
+  }
+
+  static Vec3<D> up() { return {D(0.0), D(0.0), D(1.0)}; }
+  Vec3<D> viewer() const { return {-mirrored_viewer_.x, -mirrored_viewer_.y, mirrored_viewer_.z}; }
+
+  Vec3<D> diffuse_direction(const D& x, const D& y, unsigned which) const {
+    if (s_->brilliance == 1) return cosine_above(x, y);
+    return direction_about(up(), s_->brilliance, x, y, which);
+  }
+
+  /// The viewer mirrored by a direction about the normal.
+  Vec3<D> by_halfway(const D& x, const D& y, unsigned which) const {
+    const Vec3<D> h = direction_about(up(), s_->blinn, x, y, which), v = viewer();
+    const D twice = D(2.0) * dot_lanes(h, v);
+    return unit_lanes(Vec3<D>{h.x * twice - v.x, h.y * twice - v.y, h.z * twice - v.z});
+  }
+
+  /// Adds the lobe about the halfway direction towards the unit vector `w` to value and density, both times
+  /// pi.
+  void add_halfway(const Vec3<D>& w, Vec3<D>& value, D& pdf) const {
+    const D zero(0.0), one(1.0);
+    const Vec3<D> v = viewer(), sum{v.x + w.x, v.y + w.y, v.z + w.z};
+    const D size = sqrt(max(zero, dot_lanes(sum, sum)));
+    const auto there = size > D(1e-9);
+    const D length = select(there, size, one), cosine = max(zero, min(one, sum.z / length));
+    const D shine = select(there, power_lanes(cosine, s_->blinn), zero);
+    // The cosine between the halfway direction and the viewer is half the length of the sum.
+    value = value + broadcast<D>(s_->halfway) * shine;
+    pdf = pdf + choice_[kHalfway] * D((s_->blinn + 1) / 2) * shine / (D(2.0) * length);
   }
 
   static void add_delta(BsdfSamples<D>& sample, const typename D::M& chosen, const Vec3<D>& coefficient,

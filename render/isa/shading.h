@@ -1,6 +1,8 @@
 #pragma once
 /// \file Shading of hits in columns, for one instruction set.
 
+#include <cmath>
+
 #include "accel/surface/offset_origin.h"
 #include "core/simd_memory.h"
 #include "core/simd_native.h"
@@ -91,7 +93,7 @@ template <class A>
 void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ArrivingRays& rays,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
-  c.varying = c.sending = c.unsplit = 0;
+  c.varying = c.sending = c.unsplit = c.uneven = c.blinned = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const PickedLanes<F> ray(c.ray + i);
     const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]),
@@ -155,12 +157,60 @@ OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highli
   return F::load(lanes);
 }
 
+/// The diffuse light of hits i ... by the `cosine`, in `lanes` with brilliance and grain.
+template <class F>
+OKTETT_NOINLINE F uneven_diffuse(const F& cosine, const F& diffuse, const ShadingColumns& c, std::size_t i,
+                                 unsigned lanes) {
+  float all[F::kWidth], weight[F::kWidth];
+  cosine.store(all), diffuse.store(weight);
+  for (int k = 0; k < F::kWidth; ++k) {
+    if ((lanes >> k & 1) == 0) {
+      all[k] *= weight[k];
+      continue;
+    }
+    const double x = all[k] > 0 ? all[k] : 0;
+    const double lit = weight[k] * phong_power(x < 1 ? x : 1, c.brilliance[i + k]);
+    // Light from behind stays none.
+    all[k] = x > 0 && lit > c.grain[i + k] ? static_cast<float>(lit - c.grain[i + k]) : 0;
+  }
+  return F::load(all);
+}
+
+/// Weight * max(0, n . h)^blinn (Blinn 1977) of hits i ... in `lanes`, h being halfway between light and
+/// viewer.
+template <class F>
+OKTETT_NOINLINE F blinn_highlights(const PhongCosines<F>& at, const ShadingColumns& c, std::size_t i,
+                                   unsigned lanes) {
+  float cosine[F::kWidth], highlight[F::kWidth], value[F::kWidth];
+  at.cosine.store(cosine), at.highlight.store(highlight);
+  for (int k = 0; k < F::kWidth; ++k) {
+    value[k] = 0;
+    if ((lanes >> k & 1) == 0) continue;
+    double arriving = 0;  // cosine between the ray and the normal, negative
+    for (int axis = 0; axis < 3; ++axis)
+      arriving += double{c.direction[axis][i + k]} * double{c.ns[axis][i + k]};
+    const double with_light = highlight[k] + 2.0 * cosine[k] * arriving;  // l . direction
+    const double square = 2 - 2 * with_light, sum = cosine[k] - arriving;
+    if (!(square > 1e-12) || !(sum > 0)) continue;
+    const double middle = sum / std::sqrt(square);
+    value[k] =
+        static_cast<float>(c.specular_blinn[i + k] * phong_power(middle < 1 ? middle : 1, c.blinn[i + k]));
+  }
+  return F::load(value);
+}
+
 /// Colour * diffuse * cos(n, l) + specular colour * specular * max(0, r . v)^phong (Phong 1975) for hits
 /// i ... of the columns, where the light is in front of the surface; both sides of a surface are lit alike.
 template <class F>
 OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const ShadingColumns& c, std::size_t i) {
   const F zero(0.0f), specular = F::load(c.specular + i);
-  const Vec3<F> sum = scale_lanes(load_lanes<F>(c.color, i), F::load(c.diffuse + i) * at.cosine);
+  F lit = F::load(c.diffuse + i) * at.cosine;
+  if (const unsigned uneven = static_cast<unsigned>(c.uneven >> i) & real_lanes<F>(c, i); uneven != 0)
+    lit = uneven_diffuse(at.cosine, F::load(c.diffuse + i), c, i, uneven);
+  Vec3<F> sum = scale_lanes(load_lanes<F>(c.color, i), lit);
+  if (const unsigned blinned = static_cast<unsigned>(c.blinned >> i) & real_lanes<F>(c, i); blinned != 0)
+    sum =
+        add_lanes(sum, scale_lanes(load_lanes<F>(c.specular_color, i), blinn_highlights(at, c, i, blinned)));
   // The comparisons keep NaN in the sum.
   const auto shines = ~(specular == zero) & ~(at.highlight <= zero);
   if (none(shines)) return sum;
@@ -291,7 +341,9 @@ void shadow_rays_code(const InteractionBlock& s, const LightSource& light, const
   const F zero(0.0f);
   std::size_t end = out.size;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
-    if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero))) continue;
+    if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero)) &&
+        (static_cast<unsigned>(c.blinned >> i) & real_lanes<F>(c, i)) == 0)
+      continue;
     const LitHits<F> hits = lit_hits<F>(s, light, c, i);
     unsigned lit = bits(~(hits.at.cosine <= zero)) & real_lanes<F>(c, i);
     if (lit == 0) continue;
@@ -345,7 +397,11 @@ void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, Bounce
     const unsigned clear = ~bits(transparency == zero) & real;
     if (((~bits(reflection == zero) & real) | clear) == 0) continue;
     const Vec3<F> d = load_lanes<F>(c.direction, i), ns = load_lanes<F>(c.ns, i), ng = load_lanes<F>(c.ng, i);
-    Vec3<F> mirror = scale_lanes(load_lanes<F>(c.specular_color, i), reflection);
+    Vec3<F> mirror_color = load_lanes<F>(c.specular_color, i);
+    const auto varying = static_cast<unsigned>(c.varying >> i) & real;
+    if (varying != 0)
+      mirror_color = select_lanes(F::M::from_bits(varying), load_lanes<F>(c.mirror_color, i), mirror_color);
+    Vec3<F> mirror = scale_lanes(mirror_color, reflection);
     if (clear != 0) {
       const F eta = F::load(c.eta + i);
       Vec3<F> direction;
@@ -369,8 +425,7 @@ void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, Bounce
       }
       mirror = {mirror.x + more, mirror.y + more, mirror.z + more};
       Vec3<F> filter = load_lanes<F>(c.color, i);
-      if (const auto varying = static_cast<unsigned>(c.varying >> i) & real; varying != 0)
-        filter = select_lanes(F::M::from_bits(varying), load_lanes<F>(c.filter, i), filter);
+      if (varying != 0) filter = select_lanes(F::M::from_bits(varying), load_lanes<F>(c.filter, i), filter);
       put_bounces(s, c, i, clear & bits(exists), direction, scale_lanes(filter, passes), refracted);
     }
     put_bounces(s, c, i, real, reflect_above_lanes(d, ns, ng), mirror, mirrored);

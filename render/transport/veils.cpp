@@ -49,7 +49,14 @@ class FilledWay {
     const Insides& insides = wavefront_.rays.insides[ray_];
     Veil all;
     const bool open = insides.is_open();
-    if (open) all = pass_fogs(context_.fogs, way_.origin, way_.direction, way_.length);
+    if (open) {
+      // Fog lies before bows.
+      all = pass_fogs(context_.fogs, way_.origin, way_.direction, way_.length);
+      if (!context_.rainbows.empty()) {
+        const Veil bows = pass_rainbows(context_.rainbows, way_.direction, way_.length);
+        all.light = all.light + bows.light * all.left, all.left = all.left * bows.left;
+      }
+    }
     const auto add = [&](std::uint32_t number) {
       if (number >= context_.marched.size()) return;
       const Medium& medium = context_.marched[number];

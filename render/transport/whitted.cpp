@@ -5,6 +5,7 @@
 #include "accel/accel.h"
 #include "accel/accel_data.h"
 #include "core/math.h"
+#include "core/random.h"
 #include "render/light/light_share.h"
 #include "render/shading_lanes.h"
 #include "render/transport/integrators.h"
@@ -37,13 +38,23 @@ void name_hits(const RenderContext& context, const std::uint32_t* which, const I
     c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
 }
 
+/// The colour of light that is mirrored.
+Color mirror_color(const ShadingPoint& p) { return p.reflection_color.value_or(p.specular_color); }
+
+/// A number in [0, 1) that looks random, and is the same wherever a ray meets this place.
+float random_of_place(const Vec3f& place) {
+  std::uint64_t key = 0;
+  for (int k = 0; k < 3; ++k) key = mix_bits(key + std::bit_cast<std::uint32_t>(place[k]) + kGoldenBits);
+  return static_cast<float>(key >> 40) * 0x1p-24f;
+}
+
 /// The colour of light that passes.
 Color passing_color(const ShadingPoint& p) {
   const Color filter = p.filter.value_or(p.color);
   if (!p.material->conserve_energy || p.material->principled) return filter;
   Color left;
   for (int k = 0; k < 3; ++k)
-    left[k] = filter[k] * std::max(0.0f, 1 - p.specular_color[k] * p.values.reflection);
+    left[k] = filter[k] * std::max(0.0f, 1 - mirror_color(p)[k] * p.values.reflection);
   return left;
 }
 
@@ -55,6 +66,16 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   InteractionBlock::put(c.filter, k, passing_color(p));
   InteractionBlock::put(c.ng, k, p.ng);
   InteractionBlock::put(c.ns, k, p.ns);
+  InteractionBlock::put(c.mirror_color, k, mirror_color(p));
+  if (p.values.brilliance != 1 || p.values.grain != 0) {
+    c.uneven |= std::uint64_t{1} << k;
+    c.brilliance[k] = p.values.brilliance;
+    c.grain[k] = p.values.grain != 0 ? p.values.grain * random_of_place(p.surface.position) : 0;
+  }
+  if (p.values.specular_blinn != 0) {
+    c.blinned |= std::uint64_t{1} << k;
+    c.specular_blinn[k] = p.values.specular_blinn, c.blinn[k] = p.values.blinn;
+  }
   c.diffuse[k] = p.values.diffuse;
   c.specular[k] = p.values.specular;
   c.phong[k] = p.values.phong;
@@ -197,6 +218,7 @@ void keep_listed(const RenderContext& context, const Wavefront& wavefront, const
 ShadingColumns dull(const ShadingColumns& c) {
   ShadingColumns without = c;
   std::fill(std::begin(without.specular), std::end(without.specular), 0.0f);
+  without.blinned = 0;
   return without;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -52,8 +53,121 @@ TEST_F(PovAtmosphere, FogsAreFogs) {
       "[{distance: 8, color: [1, 1, 1], altitude: 2, offset: 0.5, up: [0, 0, 1]}, {distance: 3, color: "
       "[0, 0, 0]}]");
   EXPECT_EQ(section("fog { rgb 1 }", "fog"), "none");
-  EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"),
-            "'turbulence' of a fog is left out\n");
+  EXPECT_EQ(section("fog { distance 1 turbulence <1, 2, 3> turb_depth 0.3 lambda 3 octaves 40 }", "fog"),
+            "[{distance: 1, color: [0, 0, 0], turbulence: [1, 2, 3], turbulence_depth: 0.3, octaves: 16, "
+            "lambda: 3}]");
+  EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"), "");
+}
+
+TEST_F(PovAtmosphere, RainbowsAreRainbows) {
+  EXPECT_EQ(
+      section("rainbow { direction <0, -1, 1> angle 41 width 3 distance 50 arc_angle 120 falloff_angle 60 "
+              "color_map { [0 rgbt <1, 0, 0, 0.5>] [1 rgbf <0, 0, 1, 0.25>] } }",
+              "rainbow"),
+      "[{direction: [0, -1, 1], angle: 41, width: 3, distance: 50, up: [0, 1, 0], arc: 120, falloff_arc: "
+      "90, colors: [{at: 0, color: [1, 0, 0], transmit: 0.5}, {at: 1, color: [0, 0, 1], filter: "
+      "0.25}]}]");
+  EXPECT_EQ(section("rainbow { angle 41 }", "rainbow"), "none");
+  EXPECT_NE(warnings("rainbow { angle 41 }").find("a rainbow without 'direction'"), std::string::npos);
+  const Scene scene = load_scene(dir.write("bow.pov",
+                                           "#version 3.7; rainbow { direction z angle 30 width 40 "
+                                           "distance 3 color_map { [0 rgb 1] [1 rgb 0] } }"));
+  ASSERT_EQ(scene.rainbows.size(), 1u);
+  EXPECT_EQ(scene.rainbows[0].colors.size(), 2u);
+}
+
+TEST_F(PovAtmosphere, FinishesSayHowLightFallsOff) {
+  EXPECT_EQ(look("pigment { rgb 1 } finish { brilliance 3 crand 0.2 }"),
+            "ambient: 0.1, diffuse: 0.6, brilliance: 3, grain: 0.2");
+  // Both highlights, each with its own exponent, and mirrors of another colour.
+  EXPECT_EQ(look("pigment { rgb 1 } finish { phong 0.5 phong_size 20 specular 0.25 roughness 0.1 reflection "
+                 "rgb <0.5, 0.25, 0> }"),
+            "ambient: 0.1, diffuse: 0.6, specular: 0.5, phong: 20, specular_blinn: 0.25, blinn: 10, "
+            "reflection: 0.5, reflection_color: [1, 0.5, 0]");
+  EXPECT_EQ(look("pigment { rgb 1 } finish { brilliance 1 crand 0 specular 0 }"),
+            "ambient: 0.1, diffuse: 0.6");
+}
+
+// The side from which the normal points away, here of a sphere that is cut open.
+TEST_F(PovAtmosphere, InsidesHaveTheirOwnTexture) {
+  const std::string ball =
+      "sphere { 0, 1 pigment { rgb <1, 0, 0> } interior_texture { pigment { rgb <0, 1, 0> } } }";
+  const std::string materials = section(ball, "materials");
+  EXPECT_NE(materials.find("color: [0, 1, 0]"), std::string::npos) << materials;
+  EXPECT_NE(materials.find("back: material"), std::string::npos) << materials;
+  EXPECT_EQ(warnings(ball), "");
+  const Scene scene = load_scene(dir.write("back.pov", "#version 3.7; " + ball));
+  ASSERT_EQ(scene.materials.size(), 2u);
+  const std::uint32_t front = scene.objects.at(0).material;
+  ASSERT_NE(scene.materials[front].back, kNoId);
+  EXPECT_EQ(scene.materials[front].color, (Color{1, 0, 0}));
+  EXPECT_EQ(scene.materials[scene.materials[front].back].color, (Color{0, 1, 0}));
+}
+
+// In POV-Ray 3.7.0.10 `trace` finds these heights: x grows along x, y against z.
+TEST_F(PovAtmosphere, HeightFieldsOfFunctionsAreMeshes) {
+  const auto heights = [&](const std::string& text) {
+    const pov::TranslatedScene scene = translate(text);
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    return scene.meshes.empty() ? nullptr : scene.meshes.begin()->second;
+  };
+  const auto at = [](const TriangleMesh& mesh, double x, double z) {
+    for (const Vec3f& v : mesh.positions)
+      if (std::abs(v.x - x) < 1e-5 && std::abs(v.z - z) < 1e-5) return static_cast<double>(v.y);
+    ADD_FAILURE() << "no corner at " << x << ", " << z;
+    return 0.0;
+  };
+  const auto field = heights("height_field { function 5, 4 { x*0.5 + y*y*0.3 + 0.05 } }");
+  ASSERT_TRUE(field);
+  EXPECT_EQ(field->triangle_count(), 24u);
+  EXPECT_NEAR(at(*field, 0, 0), 0.35, 2e-5);
+  EXPECT_NEAR(at(*field, 0, 1), 0.05, 2e-5);
+  EXPECT_NEAR(at(*field, 0.5, 1 / 3.0), 0.43333, 2e-5);
+  EXPECT_NEAR(at(*field, 1, 1), 0.55, 2e-5);
+  // The grey of the colours.
+  const auto grey = heights(
+      "height_field { function 4, 4 { pigment { gradient x color_map { [0 rgb <1, 0, 0>] [1 rgb <0, 1, 0.5>] "
+      "} "
+      "} } }");
+  ASSERT_TRUE(grey);
+  EXPECT_NEAR(at(*grey, 1 / 3.0, 1 / 3.0), 0.41343, 2e-4);
+  EXPECT_NEAR(at(*grey, 2 / 3.0, 0), 0.52953, 2e-4);
+  // A sum without end in sight is none, nor is a function without values.
+  for (const char* const bad : {"sum(i, 1, 1e9, x)", "1/(x - x)"}) {
+    const std::string text = std::string("height_field { function 9, 9 { ") + bad + " } }";
+    EXPECT_TRUE(translate(text).meshes.empty()) << bad;
+    EXPECT_NE(warnings(text).find("has no value somewhere, or takes too many steps"), std::string::npos)
+        << bad;
+  }
+  // Below the water nothing is seen, and no sides.
+  const auto wet = heights("height_field { function 2, 2 { x } smooth water_level 0.25 }");
+  ASSERT_TRUE(wet);
+  float least = 1;
+  for (const Vec3f& v : wet->positions) least = std::min(least, v.y);
+  EXPECT_NEAR(least, 0.25, 1e-6);
+  // What is cut is closed by sides and a bottom.
+  const auto solid = heights("intersection { height_field { function 3, 3 { 0.5 } } sphere { 0.5, 1 } }");
+  ASSERT_TRUE(solid);
+  EXPECT_EQ(solid->triangle_count(), 8u + 16 + 8);
+}
+
+// Beyond the unit square an image that is not repeated lets all light pass.
+TEST_F(PovAtmosphere, ImagesThatAreNotRepeatedEnd) {
+  dir.write("grey.ppm", "P3\n1 1\n255\n128 128 128\n");
+  const std::string ball = "sphere { 0, 1 pigment { image_map { ppm \"grey.ppm\" once } } }";
+  EXPECT_EQ(warnings(ball), "");
+  const std::string materials = section(ball, "materials");
+  EXPECT_NE(materials.find("filter: {function: {f: "), std::string::npos) << materials;
+  EXPECT_NE(materials.find("[1, [1, 1, 1]]"), std::string::npos) << materials;
+  EXPECT_NE(warnings("sphere { 0, 1 pigment { image_map { ppm \"grey.ppm\" once map_type 1 } } }")
+                .find("'once' of an image that is not planar"),
+            std::string::npos);
+}
+
+TEST_F(PovAtmosphere, DefaultsNeedNoHash) {
+  EXPECT_EQ(section("default { finish { ambient 0.5 } } sphere { 0, 1 }", "materials"),
+            "{material: {color: [0, 0, 0], ambient: 0.5, diffuse: 0.6}}");
+  EXPECT_EQ(warnings("default { finish { ambient 0.5 } } sphere { 0, 1 }"), "");
 }
 
 TEST_F(PovAtmosphere, OnlyHollowSolidsAreFullOfFog) {

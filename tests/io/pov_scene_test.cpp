@@ -241,9 +241,8 @@ TEST(PovScene, LooksBecomeMaterials) {
   EXPECT_EQ(
       material("pigment { rgb 1 } finish { ambient 0 diffuse 1 phong 0.5 phong_size 20 reflection 0.25 }"),
       "{material: {color: [1, 1, 1], ambient: 0, diffuse: 1, specular: 0.5, phong: 20, reflection: 0.25}}");
-  // Half of the light of the halfway vector's exponent 1 / 0.01: a fourth of it about the mirrored ray.
   EXPECT_EQ(material("pigment { rgb 1 } finish { specular 1 roughness 0.01 }"),
-            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, specular: 1, phong: 25}}");
+            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, specular_blinn: 1, blinn: 100}}");
   EXPECT_EQ(material("pigment { rgbf <1, 0.5, 1, 0.75> } interior { ior 1.5 }"),
             "{material: {color: [1, 0.5, 1], ambient: 0.025, diffuse: 0.15, transparency: 0.75, filter: [1, "
             "0.5, 1], fresnel: false, ior: 1.5}}");
@@ -481,8 +480,8 @@ TEST(PovScene, LightsHaveTheirShape) {
             "[{directional: {direction: [0, -5, 1], from: [0, 5, 0], color: [1, 1, 1]}}]");
   const std::string round = lights("area_light 2*x, 2*z, 2, 2 circular");
   EXPECT_NE(round.find("position: [0.7071067811865"), std::string::npos) << round;
-  EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 17, 2 }"),
-            "scene.pov:2:48: warning: lights have at most 8 points along a side\n");
+  EXPECT_EQ(files.warnings("#version 3.7;\nlight_source { <0,5,0>, rgb 1 area_light x, z, 18, 2 }"),
+            "scene.pov:2:48: warning: lights have at most 17 points along a side\n");
 }
 
 TEST(PovScene, LightsAndSurroundings) {

@@ -169,5 +169,19 @@ TEST(BsdfPhong, SamplesFollowTheDensity) {
   }
 }
 
+TEST(BsdfPhong, SamplesOfBlinnAndBrillianceFollowTheDensity) {
+  constexpr float kExponent[] = {0, 0.5f, 1, 10, 32.5f, 1000};
+  for (int n = 0; n < 24; ++n) {
+    const std::uint64_t key = mix_bits(78000 + n);
+    PhongParameters p;
+    p.diffuse = any_of(kWeight, key, 1), p.brilliance = any_of(kExponent, key, 2);
+    p.specular_blinn = any_of(kWeight, key, 3), p.blinn = any_of(kExponent, key, 4);
+    p.specular = n % 3 == 0 ? 0.5f : 0;
+    SCOPED_TRACE(testing::Message() << "set " << n << ": " << p.brilliance << ", " << p.blinn);
+    const Vec3f wo = direction_at(any_of(kCosine, key, 6), n);
+    expect_samples_follow_density(setting(phong_bsdf(p, wo, true), wo, 1.5), key);
+  }
+}
+
 }  // namespace
 }  // namespace oktett::bsdf_sampling_test

@@ -183,6 +183,44 @@ TEST(BsdfPhong, IsTheModelOfLamps) {
   }
 }
 
+// Blinn's highlight by the angle between the normal and the halfway direction, and diffuse light that falls
+// off by a power of the cosine.
+TEST(BsdfPhong, HasBlinnsHighlightAndBrilliance) {
+  PhongParameters p;
+  p.color = {0.5f, 0.25f, 1}, p.specular_color = {1, 0.5f, 0.25f};
+  p.diffuse = 0.6f, p.specular = 0;
+  for (const float exponent : {0.5f, 3.0f, 20.5f}) {
+    p.brilliance = exponent, p.specular_blinn = 0.8f, p.blinn = 2 * exponent;
+    for (std::uint64_t n = 0; n < 100; ++n) {
+      const Vec3f wo = random_above(mix_bits(n)), wi = random_above(mix_bits(n + 1000));
+      const double angle = std::acos(normalize(Vec3d(wo) + Vec3d(wi)).z);
+      const double shine = std::pow(std::cos(angle), 2 * exponent);
+      const Color expected = (p.color * static_cast<float>(0.6 * std::pow(double{wi.z}, double{exponent})) +
+                              p.specular_color * static_cast<float>(0.8 * shine)) /
+                             static_cast<float>(std::numbers::pi);
+      expect_close(phong_bsdf(p, wo, true).evaluate(wi).value, expected, 1e-5, 1e-6);
+    }
+  }
+}
+
+// By the integral of cos^n over the hemisphere, 2 pi / (n + 1).
+TEST(BsdfPhong, BrillianceTakesItsPartOfTheLight) {
+  PhongParameters p;
+  p.color = {1, 1, 1}, p.diffuse = 0.6f;
+  for (const float exponent : {0.0f, 0.5f, 4.0f}) {
+    p.brilliance = exponent;
+    const float part = 0.6f * 2 / (exponent + 1);
+    expect_close(mean_weight(phong_bsdf(p, direction_at(0.6, 1), true), 4000, 1), Color{part, part, part},
+                 1e-3);
+  }
+}
+
+TEST(BsdfPhong, MirrorsMayHaveTheirOwnColour) {
+  PhongParameters p;
+  p.diffuse = 0, p.reflection = 0.5f, p.specular_color = {1, 0, 0}, p.mirror_color = Color{0, 1, 0.5f};
+  expect_close(mean_weight(phong_bsdf(p, direction_at(0.6, 1), true), 100, 1), {0, 0.5f, 0.25f}, 1e-5);
+}
+
 TEST(BsdfPhong, MirrorAndGlassAreDelta) {
   PhongParameters p;
   p.diffuse = 0, p.reflection = 0.3f, p.transparency = 0.7f, p.color = {0.5f, 1, 1};
@@ -230,7 +268,8 @@ PrincipledParameters adversarial_principled(std::uint64_t key) {
 PhongParameters adversarial_phong(std::uint64_t key) {
   PhongParameters p;
   p.color = adversarial_color(key, 0), p.specular_color = adversarial_color(key, 3);
-  float* const scalars[] = {&p.diffuse, &p.specular, &p.phong, &p.reflection, &p.transparency, &p.ior};
+  float* const scalars[] = {&p.diffuse, &p.specular,   &p.phong,          &p.reflection, &p.transparency,
+                            &p.ior,     &p.brilliance, &p.specular_blinn, &p.blinn};
   std::uint32_t d = 10;
   for (float* s : scalars) *s = adversarial(key, d++);
   return p;

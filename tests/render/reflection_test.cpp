@@ -60,6 +60,38 @@ TEST(Reflection, GrowsWithTheAngle) {
   }
 }
 
+TEST(Reflection, MayHaveAnotherColourThanHighlights) {
+  for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path}) {
+    Material m = diffuse({0, 0, 0});
+    m.diffuse = 0, m.reflection = 0.5f;
+    m.specular_color = {0, 1, 0}, m.reflection_color = Color{0.5f, 1, 1};
+    EXPECT_NEAR(seen(m, 30, kind).x, 0.25, 1e-5);
+    m.reflection_color.reset();
+    EXPECT_EQ(seen(m, 30, kind).x, 0);
+  }
+}
+
+// Below the horizon all is blue: what is seen of the plane from below is its back.
+TEST(Reflection, BacksMayHaveAnotherMaterial) {
+  for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::albedo})
+    for (const bool above : {true, false}) {
+      Scene scene = bare_scene(1);
+      scene.integrator.kind = kind, scene.integrator.depth = 1;
+      scene.camera.projection = Projection::orthographic, scene.camera.height = 1e-4;
+      scene.camera.from = {0, above ? 3.0 : -3.0, 0}, scene.camera.at = {0, 0, 0},
+      scene.camera.up = {0, 0, 1};
+      scene.background = {1, 1, 1};
+      Material front = mirror(), back = mirror();
+      front.color = {1, 0, 0}, back.color = {0, 1, 0};
+      front.specular_color = {1, 0, 0}, back.specular_color = {0, 1, 0};
+      front.back = add_material(scene, back);
+      add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, front));
+      const Color shown = color(run(scene).picture, 0, 0);
+      EXPECT_NEAR(shown.x, above ? 1 : 0, 1e-5) << static_cast<int>(kind);
+      EXPECT_NEAR(shown.y, above ? 0 : 1, 1e-5) << static_cast<int>(kind);
+    }
+}
+
 TEST(Reflection, IsThatOfPovRay) {
   constexpr double kNear = 2e-5;
   EXPECT_NEAR(seen(varying(0.1f, 0.9f, 1), 30).x, 0.20719, kNear);

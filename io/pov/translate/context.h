@@ -17,6 +17,8 @@
 
 namespace oktett::pov {
 
+class ObjectQueries;
+
 /// A scene file without a file.
 struct Context {
   explicit Context(const Document& d) : document(d), tree(d) {}
@@ -29,8 +31,9 @@ struct Context {
   /// The sections of the tree.
   Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr, media = nullptr;
   std::string mesh_prefix;
-  double gamma = 1;      ///< in which light is computed
-  bool has_fog = false;  ///< or media: it matters which solids are hollow
+  ObjectQueries* queries = nullptr;  ///< null: nobody can be asked for values of functions
+  double gamma = 1;                  ///< in which light is computed
+  bool has_fog = false;              ///< or media: it matters which solids are hollow
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
   /// declaration.
   std::map<const Block*, std::array<Vec3d, 2>> extents;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace oktett::pov {
@@ -66,9 +67,12 @@ class FinishReader {
       if (a.is_numbers()) a.take();
     } else if (word == "conserve_energy")
       f.conserves = a.flag();
-    else if (word == "brilliance" || word == "crand" || word == "reflection_exponent") {
-      if (a.number("a number") != (word == "crand" ? 0 : 1))
-        tell(word == "reflection_exponent" ? "exponent of reflection" : word, where);
+    else if (word == "brilliance")
+      f.brilliance = std::max(0.0, a.number("a number"));
+    else if (word == "crand")
+      f.crand = std::max(0.0, a.number("a number"));
+    else if (word == "reflection_exponent") {
+      if (a.number("a number") != 1) tell("exponent of reflection", where);
     } else if (is_filler(word)) {
     } else {
       tell(word, where);

@@ -49,6 +49,7 @@ class MaterialWriter {
     if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
     tree_.put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }));
+    put_unevenness(map, look);
     put_highlight(map, look);
     put_reflection(map, look);
     double ior = interior.ior;
@@ -94,9 +95,11 @@ class MaterialWriter {
     return found;
   }
 
-  /// Unless it is 0, as it is where nothing is said.
-  void put_unless_zero(Node map, std::string_view key, Node value) {
-    if (value->text != "0" || value->kind != YamlKind::scalar) tree_.put(map, key, value);
+  /// Unless it is 0, as it is where nothing is said. Returns whether it is not.
+  bool put_unless_zero(Node map, std::string_view key, Node value) {
+    const bool is_seen = value->text != "0" || value->kind != YamlKind::scalar;
+    if (is_seen) tree_.put(map, key, value);
+    return is_seen;
   }
 
   // ---- Values of a look that may be in a pattern.
@@ -221,28 +224,34 @@ class MaterialWriter {
     tree_.put(map, "filter", color_node(tree_, where_, through_of(c) / (c.filter + c.transmit)));
   }
 
-  /// POV-Ray's `specular` is a power of the cosine between the normal and the direction halfway to the light,
-  /// whose angle is half of that from the mirrored ray, so the highlight is as wide as that of a fourth of
-  /// the exponent.
   void put_highlight(Node map, const Look& look) {
-    if (any(look, [](const Finish& f) { return f.phong > 0 && f.specular > 0; }))
-      context_.tell("phong and specular", where_,
-                    "of 'phong' and 'specular' in one finish the stronger is shown");
-    if (!any(look, [](const Finish& f) { return f.phong > 0 || f.specular > 0; })) return;
-    put_unless_zero(map, "specular", number(look, [](const Look& l) {
-                      return std::max({0.0, l.finish.phong, l.finish.specular});
-                    }));
-    tree_.put(map, "phong", number(look, [](const Look& l) {
-                const Finish& f = l.finish;
-                return f.phong >= f.specular ? std::max(0.0, f.phong_size)
-                                             : 1 / (4 * std::max(f.roughness, 1e-6));
-              }));
-    if (any(look, [](const Finish& f) { return max_component(f.reflection_max) > 0; })) return;
-    if (any(look, [](const Finish& f) { return f.metallic > 0; }))
+    if (any(look, [](const Finish& f) { return f.phong > 0; })) {
+      put_unless_zero(map, "specular",
+                      number(look, [](const Look& l) { return std::max(0.0, l.finish.phong); }));
+      tree_.put(map, "phong", number(look, [](const Look& l) { return std::max(0.0, l.finish.phong_size); }));
+    }
+    if (any(look, [](const Finish& f) { return f.specular > 0; })) {
+      const bool is_seen =
+          put_unless_zero(map, "specular_blinn",
+                          number(look, [](const Look& l) { return std::max(0.0, l.finish.specular); }));
+      if (is_seen)
+        tree_.put(map, "blinn",
+                  number(look, [](const Look& l) { return 1 / std::max(l.finish.roughness, 1e-6); }));
+    }
+    const auto tinted = [](const Finish& f) { return f.metallic > 0 && (f.phong > 0 || f.specular > 0); };
+    if (any(look, tinted))
       tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
                   return pigment_node(context_, where_, l.pigment,
                                       {[&](const PovColor& c) { return tint(l.finish.metallic, c.rgb); }});
                 }));
+  }
+
+  /// How light of lamps falls off and is grained.
+  void put_unevenness(Node map, const Look& look) {
+    if (any(look, [](const Finish& f) { return f.brilliance != 1; }))
+      tree_.put(map, "brilliance", number(look, [](const Look& l) { return l.finish.brilliance; }));
+    if (any(look, [](const Finish& f) { return f.crand > 0; }))
+      put_unless_zero(map, "grain", number(look, [](const Look& l) { return l.finish.crand; }));
   }
 
   static bool mirrors(const Finish& f) {
@@ -265,19 +274,21 @@ class MaterialWriter {
 
   void put_reflection(Node map, const Look& look) {
     if (!any(look, mirrors)) return;
-    put_unless_zero(map, "reflection",
-                    number(look, [](const Look& l) { return weight_of(l.finish.reflection); }));
+    const bool is_seen = put_unless_zero(
+        map, "reflection", number(look, [](const Look& l) { return weight_of(l.finish.reflection); }));
+    const bool grows = any(look, [](const Finish& f) { return f.varies; });
+    if (!is_seen && !grows) return;
     put_growth(map, look);
     if (any(look, [](const Finish& f) { return f.conserves; }))
       tree_.put(map, "conserve_energy", tree_.flag(where_, true));
     const auto is_colored = [](const Finish& f) { return !(hue_of(f, {0, 0.5, 1}) == Vec3d{1, 1, 1}); };
-    if (!any(look, is_colored)) return;
-    tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
+    const bool tints_highlights =
+        std::ranges::any_of(map->items, [](const YamlNode* item) { return item->text == "specular_color"; });
+    if (!any(look, is_colored) && !tints_highlights) return;
+    tree_.put(map, "reflection_color", of_shown_layer(look, [&](const Look& l) {
                 return pigment_node(context_, where_, l.pigment,
                                     {[&](const PovColor& c) { return hue_of(l.finish, c.rgb); }});
               }));
-    if (any(look, [](const Finish& f) { return f.phong > 0 || f.specular > 0; }))
-      context_.tell("coloured reflection", where_, "highlights have the colour of the reflection");
   }
 
   /// How reflection grows with the angle.
@@ -366,12 +377,18 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
                               static_cast<const Block*>(default_texture.get()));
   Interior interior;
   if (dress.interior) read_interior(context_, *dress.interior, interior);
-  const bool is_placed = !(dress.to_texture == Affine{}) || interior.fills();
+  const bool is_placed = !(dress.to_texture == Affine{}) || interior.fills() || !dress.back.empty();
   if (!is_placed)
     if (const auto found = known_.find(key); found != known_.end()) return name_node(where, found->second);
   const Look look = look_of(dress, default_texture);
   const std::string medium = dress.solid ? media_.name(interior, dress.interior_to_world, dress.hollow) : "";
   const Node node = MaterialWriter(context_, where).write(look, interior, medium);
+  if (!dress.back.empty()) {
+    Dress back;
+    back.textures = dress.back, back.interior = dress.interior, back.to_texture = dress.to_texture;
+    back.solid = false;
+    context_.tree.put(node, "back", material(back, default_texture, where));
+  }
   const auto [entry, is_new] = names_.try_emplace(flow_text(*node), "");
   if (is_new) {
     std::string wanted = look.name;

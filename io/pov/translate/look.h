@@ -16,7 +16,8 @@ namespace oktett::pov {
 /// What an object is dressed with, its own or that of a union around it.
 struct Dress {
   std::vector<std::shared_ptr<const Block>>
-      textures;  ///< blocks `texture` or `pigment`, the lowest layer first
+      textures;                                    ///< blocks `texture` or `pigment`, the lowest layer first
+  std::vector<std::shared_ptr<const Block>> back;  ///< blocks `interior_texture`; empty: both sides alike
   std::vector<std::shared_ptr<const Block>> finishes;  ///< blocks `finish` and `normal` that stand alone
   std::shared_ptr<const Block> interior;               ///< or null
   Affine to_texture;  ///< from the space of the object before its transforms to that of the textures

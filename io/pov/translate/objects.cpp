@@ -208,6 +208,13 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
   return build_children(block, children, m, outer);
 }
 
+/// What stands in a block `interior_texture`, as a texture.
+static std::shared_ptr<const Block> texture_of_back(const Block& block) {
+  auto texture = std::make_shared<Block>(block);
+  texture->keyword = "texture";
+  return texture;
+}
+
 ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Arguments& a) {
   Modifiers m;
   while (!a.at_end()) {
@@ -227,8 +234,7 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       } else if (k == "clipped_by") {
         m.clips.push_back({inner, m.moves.list.size()});
       } else if (k == "interior_texture") {
-        context_.tell("interior_texture", where,
-                      "'interior_texture' has no meaning here; both sides look alike");
+        m.own.back.push_back(texture_of_back(*inner));
       } else if (k != "bounded_by" && k != "photons" && k != "radiosity" && k != "uv_mapping") {
         context_.tell(fmt::format("modifier {}", k), where,
                       fmt::format("'{}' of an object has no meaning here, and is left out", k));
@@ -262,6 +268,7 @@ void ObjectWriter::read_material(const Block& block, Modifiers& m) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     if (inner == nullptr || *inner == nullptr) continue;
     if ((*inner)->keyword == "texture") m.own.textures.push_back(*inner), m.own.to_texture = m.moves.all;
+    if ((*inner)->keyword == "interior_texture") m.own.back.push_back(texture_of_back(**inner));
     if ((*inner)->keyword == "interior") m.own.interior = *inner, m.before_interior = m.moves.all;
     if ((*inner)->keyword == "material") read_material(**inner, m);
   }
@@ -272,8 +279,10 @@ Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
   Dress dress = outer.dress;
   dress.to_texture = dress.to_texture * m.moves.all;
   if (m.own.has_texture()) {
-    dress.textures = m.own.textures, dress.finishes = m.own.finishes, dress.to_texture = m.own.to_texture;
+    dress.textures = m.own.textures, dress.back = m.own.back, dress.finishes = m.own.finishes,
+    dress.to_texture = m.own.to_texture;
   }
+  if (!m.own.back.empty()) dress.back = m.own.back;
   if (m.hollow) dress.hollow = true;
   if (!m.own.interior) return dress;
   dress.interior = m.own.interior;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "io/pov/translate/extent.h"
 #include "io/pov/translate/functions.h"
@@ -480,6 +481,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   Tree& tree = context_.tree;
   p.word = "image_map", p.where = block.where, p.key = "", p.own = tree.map(block.where), p.is_list = false;
   std::string_view onto = "planar";
+  std::optional<Place> once;
   while (!a.at_end()) {
     const Place where = a.where();
     const Element& element = a.take();
@@ -497,9 +499,12 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       const double type = a.number("a kind");
       onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
     } else if (word->text == "once") {
-      context_.tell("once", where, "'once' of an image has no meaning here: it repeats");
+      once = where;
     }
   }
+  p.once = once && onto == "planar";
+  if (once && !p.once)
+    context_.tell("once", *once, "'once' of an image that is not planar has no meaning here: it repeats");
   if (onto != "planar") set(p.own, "onto", tree.word(block.where, onto));
 }
 
@@ -520,9 +525,25 @@ double scale_of(const PovPattern& pattern) {
   return std::isfinite(scale) ? scale : 1;
 }
 
+Node once_node(Context& context, const PovPattern& p, Node inside, Node outside) {
+  Tree& tree = context.tree;
+  PovPattern mask = p;
+  mask.key = "function", mask.own = tree.map(p.where), mask.image = nullptr, mask.once = false;
+  tree.put(mask.own, "f",
+           tree.text(p.where, "max(max(0, sign(abs(x - 0.5) - 0.5)), max(0, sign(abs(y - 0.5) - 0.5)))"));
+  const Node values = tree.list(p.where);
+  push_entry(tree, p.where, values, 0, inside), push_entry(tree, p.where, values, 1, outside);
+  return pattern_node(context, mask, values);
+}
+
 Node pattern_node(Context& context, const PovPattern& p, Node values) {
   Tree& tree = context.tree;
   const Place& where = p.where;
+  if (p.once) {
+    PovPattern repeated = p;
+    repeated.once = false;
+    return once_node(context, p, pattern_node(context, repeated, values), tree.number(where, 0));
+  }
   if (p.image != nullptr && p.uses_uv) return p.image;
   const Node keys = tree.map(where);
   if (p.own != nullptr) keys->items = p.own->items;

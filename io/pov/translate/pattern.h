@@ -19,6 +19,7 @@ struct PovPattern {
   Node image = nullptr;  ///< of an image, its texture by uv
   bool is_list = false;  ///< it has a list of colours in place of a map
   bool uses_uv = false;
+  bool once = false;  ///< of an image in the unit square of x and y: it is not repeated
 
   /// Transforms, and warps as items of scene files, in the order in which they are applied to the pattern.
   std::vector<std::variant<Moves, Node>> modifiers;
@@ -76,6 +77,9 @@ void push_entry(Tree& tree, const Place& where, Node map, double at, Node value)
 /// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
 /// its values are numbers.
 Node pattern_node(Context& context, const PovPattern& pattern, Node values);
+
+/// What an image that is not repeated shows: `inside` on its unit square, `outside` beyond.
+Node once_node(Context& context, const PovPattern& pattern, Node inside, Node outside);
 
 /// How many times longer a length is in space than in the pattern, in the mean over all directions.
 double scale_of(const PovPattern& pattern);

@@ -341,9 +341,16 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   const PovColor white{{1, 1, 1}, p.filter_all, p.transmit_all},
       black{{0, 0, 0}, p.filter_all, p.transmit_all};
   const double base = part(black).x, gain = part(white).x - base;
+  Tree& tree = context.tree;
+  if (p.pattern.once) {
+    Pigment repeated = p;
+    repeated.pattern.once = false;
+    // Beyond its edges light passes as if nothing were there.
+    return once_node(context, p.pattern, image_node(context, repeated, part),
+                     part_node(tree, p.pattern.where, part, part({{0, 0, 0}, 0, 1})));
+  }
   const Node node = pattern_node(context, p.pattern, nullptr);
   if (gain == 1 && base == 0) return node;
-  Tree& tree = context.tree;
   // Other places may show the same node, so gain and base stand in a copy.
   const Node copy = tree.map(p.pattern.where);
   copy->items = node->items;
@@ -414,6 +421,7 @@ PovColor mean_of(const Pigment& p) {
 bool is_transparent(const Pigment& p) {
   const auto passes = [](const PovColor& c) { return c.filter + c.transmit > 0; };
   if (is_solid(p)) return passes(p.solid);
+  if (p.pattern.once && p.pattern.key == "projected") return true;
   if (p.filter_all + p.transmit_all > 0 && p.pattern.key == "projected") return true;
   return std::ranges::any_of(p.entries, [&](const PigmentEntry& entry) {
     return entry.pigment != nullptr ? is_transparent(*entry.pigment) : passes(entry.color);

@@ -10,6 +10,7 @@
 #include "io/image/heights.h"
 #include "io/pov/translate/blobs.h"
 #include "io/pov/translate/functions.h"
+#include "io/pov/translate/height_functions.h"
 #include "io/pov/translate/meshes.h"
 #include "io/pov/translate/patches.h"
 #include "io/pov/translate/polynomials.h"
@@ -426,7 +427,8 @@ class ShapeMaker {
         break;
       }
     }
-    if (path.empty()) return left_out("of height fields only those of image files are read");
+    if (a_.take_word("function")) return function_heights();
+    if (path.empty()) return left_out("of height fields only those of images and functions are read");
     path = find_file(context_, at, path);
     const bool palette = has_palette(path);
     try {
@@ -451,13 +453,48 @@ class ShapeMaker {
     // The upper edge of the image lies at z = 1, not at the least z.
     shapes.parts[0].first.add({Move::Kind::scale, {1, 1, -1}, {}, where_});
     shapes.parts[0].first.add({Move::Kind::translate, {0.5, 0, 0.5}, {}, where_});
-    if (water > 0) {
-      const Node above = map();
-      tree_.put(above, "normal", vector({0, -1, 0})), tree_.put(above, "offset", number(-water));
-      shapes.parts.push_back({"plane", above, nullptr, {}});
-      shapes.meet = true;
-    }
+    add_water(shapes, water);
     return shapes;
+  }
+
+  /// `function COLUMNS, ROWS { ... }`, which stands before all else.
+  std::optional<Shapes> function_heights() {
+    const auto side = [&] {
+      constexpr double kMostSide = 2048;
+      return static_cast<std::uint32_t>(std::clamp(a_.number("a number of places"), 2.0, kMostSide));
+    };
+    const std::uint32_t columns = side(), rows = side();
+    const auto* const given =
+        a_.at_end() ? nullptr : std::get_if<std::shared_ptr<const Function>>(&a_.peek().value);
+    if (given == nullptr || *given == nullptr) context_.fail(a_.where(), "expected a function");
+    const std::shared_ptr<const Function> function = *given;
+    a_.take();
+    bool smooth = false;
+    double water = 0;
+    while (!a_.at_end()) {
+      if (a_.take_word("smooth"))
+        smooth = a_.flag();
+      else if (a_.take_word("water_level"))
+        water = a_.number("a height");
+      else
+        break;
+    }
+    std::optional<MeshMaker> maker =
+        height_mesh(context_, *function, {columns, rows, smooth, operand_, std::min(water, 1.0)});
+    if (!maker)
+      return left_out("the function of a height field has no value somewhere, or takes too many steps");
+    Shapes shapes = mesh({{{std::move(*maker), nullptr}}, operand_});
+    if (operand_) add_water(shapes, water);
+    return shapes;
+  }
+
+  /// Only what lies above the water is seen of a height field.
+  void add_water(Shapes& shapes, double water) {
+    if (!(water > 0)) return;
+    const Node above = map();
+    tree_.put(above, "normal", vector({0, -1, 0})), tree_.put(above, "offset", number(-water));
+    shapes.parts.push_back({"plane", above, nullptr, {}});
+    shapes.meet = true;
   }
 
   Shapes mesh(MadeMesh made) {

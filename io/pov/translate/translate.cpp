@@ -58,6 +58,12 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
     if (s.fogs == nullptr) s.fogs = context.tree.list(block->where);
     return Tree::push(s.fogs, fog);
   }
+  if (k == "rainbow") {
+    const Node bow = rainbow_node(context, *block);
+    if (bow == nullptr) return;
+    if (s.rainbows == nullptr) s.rainbows = context.tree.list(block->where);
+    return Tree::push(s.rainbows, bow);
+  }
   if (k == "media") return read_media(context, *block, s.interior.media.emplace_back());
   if (k == "light_group") {
     context.tell("light_group", block->where, "lights of a 'light_group' light all objects");
@@ -96,8 +102,9 @@ void begin_sections(Context& context) {
 }  // namespace
 
 TranslatedObject translate_object(const Document& document, const std::shared_ptr<const Block>& object,
-                                  bool as_solid) {
+                                  bool as_solid, ObjectQueries* queries) {
   Context context(document);
+  context.queries = queries;
   begin_sections(context);
   const Element shown{object->where, object};
   ObjectWriter objects(context, {&shown, 1});
@@ -129,7 +136,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   Context context(document);
   context.warnings = document.warnings;
   context.gamma = gamma_of(document);
-  context.mesh_prefix = options.mesh_prefix;
+  context.mesh_prefix = options.mesh_prefix, context.queries = options.queries;
   Tree& tree = context.tree;
   const Place top;
   begin_sections(context);
@@ -137,7 +144,8 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   Surroundings s;
   context.has_fog = std::ranges::any_of(document.statements, [](const Element& statement) {
     const Block* const block = block_of(statement);
-    return block != nullptr && (block->keyword == "fog" || block->keyword == "media");
+    return block != nullptr &&
+           (block->keyword == "fog" || block->keyword == "rainbow" || block->keyword == "media");
   });
   ObjectWriter objects(context);
   for (const Element& statement : document.statements) {
@@ -163,6 +171,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   if (!(s.ambient == Vec3d{1, 1, 1}))
     tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
   if (s.fogs != nullptr) tree.put(root, "fog", s.fogs);
+  if (s.rainbows != nullptr) tree.put(root, "rainbow", s.rainbows);
   const std::string around = s.interior.fills() ? objects.surrounding(s.interior) : "";
   if (!context.media->items.empty()) tree.put(root, "media", context.media);
   if (!around.empty()) tree.put(root, "medium", tree.text(top, around));

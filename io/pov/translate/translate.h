@@ -14,6 +14,8 @@
 
 namespace oktett::pov {
 
+class ObjectQueries;
+
 /// A scene as a scene file would say it. Its nodes have the places of the files that it was made of.
 struct TranslatedScene {
   std::vector<std::unique_ptr<YamlFile>> files;  ///< that the nodes stand in
@@ -26,6 +28,7 @@ struct TranslatedScene {
 struct TranslateOptions {
   std::uint32_t width = 800, height = 600;  ///< of the film
   std::string mesh_prefix;                  ///< names of meshes begin with it
+  ObjectQueries* queries = nullptr;         ///< of the document, for heights that are functions; may be null
 };
 
 /// Throws Error for what cannot be meant. What scene files do not have is left out with a warning, one for
@@ -40,10 +43,10 @@ struct TranslatedObject {
   Extent extent;          ///< what the statements of the object say of its bounds; infinite if nothing
 };
 
-/// `as_solid`: what has no inside is left out, and parts that stand for all but a solid are resolved. Throws
-/// Error as translate does.
+/// `as_solid`: what has no inside is left out, and parts that stand for all but a solid are resolved.
+/// `queries` as in TranslateOptions. Throws Error as translate does.
 TranslatedObject translate_object(const Document& document, const std::shared_ptr<const Block>& object,
-                                  bool as_solid);
+                                  bool as_solid, ObjectQueries* queries = nullptr);
 
 /// A scene of one sphere about the origin that has this block `texture` or `pigment`. Of warnings only those
 /// of the look.

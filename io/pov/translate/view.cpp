@@ -211,7 +211,7 @@ struct PovLight {
 };
 
 /// The most points along a side: more make pictures slow and hardly other.
-constexpr int kMostLightPoints = 8;
+constexpr int kMostLightPoints = 17;
 
 void read_area(Context& context, Arguments& l, PovLight& light) {
   for (LightPoints& points : light.area) points.side = l.vector("a side of the light");
@@ -397,8 +397,13 @@ void read_global_settings(Context& context, const Block& block, Surroundings& s)
       s.ambient = a.vector("a colour");
     } else if (const Block* const inner = a.peek_block()) {
       a.take();
-      context.tell(fmt::format("setting {}", inner->keyword), where,
-                   fmt::format("'{}' has no meaning here, and is left out", inner->keyword));
+      const std::string_view k = inner->keyword;
+      const char* const why = k == "radiosity" ? "; 'path' shows the light that surfaces give each other"
+                              : k == "photons"
+                                  ? "; 'path' with 'caustics' shows light that mirrors and glass gather"
+                                  : "";
+      context.tell(fmt::format("setting {}", k), where,
+                   fmt::format("'{}' has no meaning here, and is left out{}", k, why));
     } else {
       a.take();
     }
