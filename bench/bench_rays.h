@@ -28,7 +28,8 @@ RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, 
 /// of a bounce after those of the bounce before, in the order of the paths.
 RayBatch bounce_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, Isa isa);
 
-/// `count` random segments, each from one face of a box to another; the box is a little smaller than `bounds`.
+/// `count` random segments, each from one face of a box to another; the box is a little smaller than
+/// `bounds`.
 RayBatch random_segments(const Box& bounds, std::size_t count);
 
 }  // namespace oktett::bench
