@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
+#include "render/camera_mesh.h"
 #include "render/sampling/warp.h"
 
 namespace oktett {
@@ -158,6 +159,11 @@ CameraFrame camera_frame(const Camera& camera, const Film& film) {
   CameraFrame frame;
   frame.projection = camera.projection;
   frame.origin = camera.from;
+  if (camera.projection == Projection::mesh) {
+    look_at(camera, frame);
+    frame.mesh = {camera.mesh, camera.mesh_origin, std::max(film.width, 1u), std::max(film.height, 1u)};
+    return frame;
+  }
   if (is_curved(camera.projection)) {
     look_at(camera, frame);
     set_curved(camera, film, frame);
@@ -257,7 +263,16 @@ static Ray curved_ray(const CameraFrame& camera, double x, double y) {
   return ray;
 }
 
+/// Of a camera of meshes.
+static Ray mesh_ray(const MeshView& view, double x, double y) {
+  if (view.mesh != nullptr) return view.mesh->ray({x, y, view.width, view.height}, view.origin);
+  Ray none;
+  none.direction = {0, 0, -1}, none.tmax = 0;
+  return none;
+}
+
 Ray camera_ray(const CameraFrame& camera, double x, double y) {
+  if (camera.projection == Projection::mesh) return mesh_ray(camera.mesh, x, y);
   if (is_curved(camera.projection)) return curved_ray(camera, x, y);
   const Vec3d place = camera.corner + camera.per_pixel_x * x + camera.per_pixel_y * y;
   Ray ray;

@@ -49,13 +49,20 @@ struct CurvedView {
   bool parallel = false;  ///< orthographic along the axis
 };
 
+/// What the rays of a camera of meshes have in common.
+struct MeshView {
+  CameraMeshPointer mesh;
+  Vec3d origin;                         ///< where its places count from
+  std::uint32_t width = 1, height = 1;  ///< of the film
+};
+
 /// A camera with all that its rays have in common. A film point (x, y) counts pixels of the full frame from
 /// its upper left corner; v(x, y) = corner + x per_pixel_x + y per_pixel_y. A perspective ray starts at
 /// `origin` in the direction v(x, y); an orthographic one starts at origin + v(x, y) in the direction
 /// `forward`. With a lens, the ray starts at a point of a disk about that origin, across the view axis, and
 /// meets the ray of the pinhole at the distance `focus` along the axis (Cook, Porter, Carpenter 1984). Of a
 /// camera with a frame, `right` and `up` may be left-handed, and v(x, y) may be sheared. Curved projections
-/// have `curved` instead of v(x, y), and no lens.
+/// have `curved` or `mesh` instead of v(x, y), and no lens.
 struct CameraFrame {
   Projection projection = Projection::perspective;
   Vec3d origin;
@@ -66,6 +73,7 @@ struct CameraFrame {
   double lens_radius = 0;  ///< 0: a pinhole
   double focus = 1;        ///< along the view axis
   CurvedView curved{};
+  MeshView mesh{};  ///< with Projection::mesh; `origin` is then the middle of the meshes
 };
 
 /// The frame of a camera. An `up` along the view axis, or a view direction of zero, is replaced by a valid

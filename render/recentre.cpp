@@ -189,6 +189,7 @@ void recentre(Scene& scene) {
   Camera& camera = scene.camera;
   if (scene.camera_given) {
     camera.from = camera.from - origin, camera.at = camera.at - origin;
+    camera.mesh_origin = camera.mesh_origin - origin;
     if (camera.focus_at) camera.focus_at = *camera.focus_at - origin;
     camera.motion = moved_motion(camera.motion, to, from);
   }

@@ -45,13 +45,18 @@ enum class Projection {
   panoramic,         ///< half a turn across, the height by the tangent
   cylindrical,       ///< the wall of a cylinder, unrolled
   spherical,         ///< longitude across, latitude up: equirectangular
+  mesh,              ///< from the faces of meshes, see CameraMesh
 };
 /// Their names.
-inline constexpr Choice<Projection> kProjections[] = {
-    {"perspective", Projection::perspective}, {"orthographic", Projection::orthographic},
-    {"fisheye", Projection::fisheye},         {"ultra_wide_angle", Projection::ultra_wide_angle},
-    {"omnimax", Projection::omnimax},         {"panoramic", Projection::panoramic},
-    {"cylindrical", Projection::cylindrical}, {"spherical", Projection::spherical}};
+inline constexpr Choice<Projection> kProjections[] = {{"perspective", Projection::perspective},
+                                                      {"orthographic", Projection::orthographic},
+                                                      {"fisheye", Projection::fisheye},
+                                                      {"ultra_wide_angle", Projection::ultra_wide_angle},
+                                                      {"omnimax", Projection::omnimax},
+                                                      {"panoramic", Projection::panoramic},
+                                                      {"cylindrical", Projection::cylindrical},
+                                                      {"spherical", Projection::spherical},
+                                                      {"mesh", Projection::mesh}};
 /// Whether the picture is no plane.
 constexpr bool is_curved(Projection projection) {
   return projection != Projection::perspective && projection != Projection::orthographic;
@@ -90,6 +95,9 @@ struct ViewFrame {
   }
 };
 
+class CameraMesh;
+using CameraMeshPointer = std::shared_ptr<const CameraMesh>;
+
 /// Looks from `from` to `at` in right-handed world space. Pixel (0, 0) is the upper left one.
 struct Camera {
   Projection projection = Projection::perspective;
@@ -116,6 +124,8 @@ struct Camera {
   MotionPointer motion{};           ///< moves `from`, `at`, `up`, `focus_at` and `frame`
   /// Instead of the direction of `at`, `up`, `fov` and `height`, which set_frame makes resemble it.
   std::optional<ViewFrame> frame{};
+  CameraMeshPointer mesh{};    ///< Projection::mesh only, where nothing else says where rays start
+  Vec3d mesh_origin{0, 0, 0};  ///< where the places of `mesh` count from
   bool operator==(const Camera&) const = default;
   /// The angle that a projection has if none is given, in degrees.
   static constexpr double usual_angle(Projection projection) {
@@ -150,6 +160,7 @@ struct Camera {
     p.field("shutter", shutter, "times when it opens and closes");
     p.check(shutter[0] <= shutter[1], "shutter", "the shutter closes before it opens");
     p.optional("motion", motion, "transforms of `from`, `at`, `up`, `frame` and a point in `focus`");
+    p.optional("mesh", mesh, "projection `mesh`: the faces that see");
   }
   /// Camera::focus or Camera::focus_at.
   struct Focus {

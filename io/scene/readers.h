@@ -70,6 +70,7 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Motio
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera& camera);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera::Focus& focus);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera::Angles& angles);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CameraMeshPointer& mesh);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, IntegratorSettings& integrator);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings& caustics);
 void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings::Radius& radius);
@@ -83,6 +84,7 @@ std::string schema_of(Schema& schema, const Range& range, const LightGroupName& 
 std::string schema_of(Schema& schema, const Range& range, const MotionPointer& motion);
 std::string schema_of(Schema& schema, const Range& range, const Camera::Focus& focus);
 std::string schema_of(Schema& schema, const Range& range, const Camera::Angles& angles);
+std::string schema_of(Schema& schema, const Range& range, const CameraMeshPointer& mesh);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings& caustics);
 std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
 

@@ -9,6 +9,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
+#include "render/camera_mesh.h"
 #include "render/moments.h"
 
 namespace oktett {
@@ -29,6 +30,15 @@ std::string view_name(Projection projection) {
   const std::string_view name = std::ranges::find(kProjections, projection, &Choice<Projection>::value)->name;
   return fmt::format("{} {} view",
                      std::string_view("aeiou").find(name[0]) == std::string_view::npos ? "a" : "an", name);
+}
+
+/// Of a camera of meshes, which stand where they are: `from` and `at` only say where it is thought to be.
+void set_meshes(SceneLoad& load, const Fields& fields, const YamlNode& node, Camera& camera) {
+  if (camera.mesh == nullptr) throw Error(node.where(), "a mesh view needs a 'mesh', whose faces see");
+  for (const char* key : {"from", "at", "up", "frame", "motion"})
+    load.warn_if_unused(fields, key, true, "the view of a mesh is that of its faces");
+  camera.from = camera.mesh->middle(), camera.at = camera.from - Vec3d{0, 0, 1}, camera.up = {0, 1, 0};
+  camera.frame.reset(), camera.motion = nullptr;
 }
 
 void check_lens(const Fields& fields, const YamlNode& node, const Camera& camera) {
@@ -56,12 +66,14 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Camera& ca
   const std::string own = projection == Projection::perspective    ? has("a 'fov'")
                           : projection == Projection::orthographic ? has("a 'height'")
                           : has_angle(projection)                  ? has("an 'angle'")
+                          : projection == Projection::mesh         ? has("no angle")
                                                                    : has("always the same angle");
   load.warn_if_unused(fields, "fov", projection != Projection::perspective, own);
   load.warn_if_unused(fields, "height", !by_height, own);
   load.warn_if_unused(fields, "angle", !has_angle(projection), own);
   for (const char* key : {"axis", "along_axis"})
     load.warn_if_unused(fields, key, !cylindrical, fmt::format("{} has no cylinder", view));
+  load.warn_if_unused(fields, "mesh", projection != Projection::mesh, fmt::format("{} has no mesh", view));
 }
 
 /// Warns of settings that change nothing, given the others.
@@ -124,7 +136,9 @@ std::string schema_of(Schema&, const Range&, const Camera::Angles&) {
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& camera) {
   load.scene.camera_given = true;
   const Fields fields = read_described(load, node, "camera", camera);
-  if (camera.frame)
+  if (camera.projection == Projection::mesh)
+    set_meshes(load, fields, node, camera);
+  else if (camera.frame)
     camera.set_frame(*camera.frame);
   else
     check_view(camera, node);

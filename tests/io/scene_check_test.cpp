@@ -68,7 +68,7 @@ TEST(SceneCheck, TellsAllErrorsInTheOrderOfTheFile) {
                 "scene.yaml:11:19: expected a colour, [r, g, b] or \"#rrggbb\", found '3'",
                 "scene.yaml:12:15: expected a number greater than 0 and less than 180, found '200'",
                 "scene.yaml:12:32: expected perspective or orthographic or fisheye or ultra_wide_angle or "
-                "omnimax or panoramic or cylindrical or spherical, found 'fish'",
+                "omnimax or panoramic or cylindrical or spherical or mesh, found 'fish'",
                 "scene.yaml:13:15: expected a whole number from 1 to 65536, found '0'",
                 "scene.yaml:13:26: expected a whole number from 1 to 65536, found '0'",
             }));

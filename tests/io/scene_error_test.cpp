@@ -119,7 +119,7 @@ TEST(SceneError, WrongTypes) {
       {"camera: {fov: wide}", "scene.yaml:2:15: expected a number, found 'wide'"},
       {"camera: {projection: fish}",
        "scene.yaml:2:22: expected perspective or orthographic or fisheye or ultra_wide_angle or omnimax or "
-       "panoramic or cylindrical or spherical, found 'fish'"},
+       "panoramic or cylindrical or spherical or mesh, found 'fish'"},
       {"integrator: {kind: paht}",
        "scene.yaml:2:20: expected whitted or path or ao or normal or depth or albedo or uv or position or "
        "object or primitive or facing or wire, found 'paht'; did you mean "

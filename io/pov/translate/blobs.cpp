@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "io/pov/translate/blob_textures.h"
 
 namespace oktett::pov {
 namespace {
@@ -71,7 +74,9 @@ class BlobMaker {
       } else if (a_.take_word("component")) {
         // The order of old scenes.
         const double strength = a_.number("a strength"), radius = std::abs(a_.number("a radius"));
-        add(where, elements, "point", tree_.vector(where, a_.vector("a point")), strength, radius);
+        const Vec3d at = a_.vector("a point");
+        add(where, elements, "point", tree_.vector(where, at), strength, radius);
+        parts_.push_back({{strength, radius, at, at, {}}, nullptr});
       } else {
         break;
       }
@@ -80,7 +85,7 @@ class BlobMaker {
     if (!(threshold > 0)) return left_out("the threshold of the blob is not above 0");
     tree_.put(keys, "iso", tree_.number(where, threshold)), tree_.put(keys, "elements", elements);
     Shapes shapes;
-    shapes.parts.push_back({"metaballs", keys, nullptr, {}});
+    shapes.parts.push_back({"metaballs", keys, blended_texture(context_, a_.block(), parts_), {}});
     return shapes;
   }
 
@@ -114,12 +119,10 @@ class BlobMaker {
     const double strength = a.number("a strength");
     Moves moves;
     while (!a.at_end())
-      if (!take_moves(context_, a, moves)) {
-        const Block* const look = a.peek_block();
-        if (look != nullptr && (look->keyword == "texture" || look->keyword == "pigment"))
-          context_.tell("blob texture", look->where, "textures of single components of blobs are left out");
-        a.take();
-      }
+      if (!take_moves(context_, a, moves)) a.take();
+    if (moves.all.is_invertible())
+      parts_.push_back({{strength, radius, from, is_segment ? to : from, moves.all.inverse()},
+                        has_own_texture(block) ? texture_of_component(block) : nullptr});
     const Place& w = block.where;
     const Node at = tree_.vector(w, moves.all.point(from));
     const Ellipsoid e = ellipsoid_of(moves.all);
@@ -146,6 +149,7 @@ class BlobMaker {
   Tree& tree_;
   Arguments& a_;
   bool any_positive_ = false;
+  std::vector<BlobPart> parts_;
 };
 
 }  // namespace

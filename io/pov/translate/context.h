@@ -3,6 +3,7 @@
 /// be said in a scene file. Within io/ only.
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
@@ -33,6 +34,7 @@ struct Context {
   std::string mesh_prefix;
   ObjectQueries* queries = nullptr;  ///< null: nobody can be asked for values of functions
   double gamma = 1;                  ///< in which light is computed
+  std::uint32_t samples = 0;         ///< per pixel, that the camera asks for; 0: it asks for none
   bool has_fog = false;              ///< or media: it matters which solids are hollow
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
   /// declaration.

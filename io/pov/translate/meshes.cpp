@@ -21,7 +21,7 @@ void MeshMaker::add(std::array<MeshCorner, 3> corners) {
       cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
   Vec3d normals{0, 0, 0};
   for (const MeshCorner& c : corners) normals = normals + c.normal.value_or(Vec3d{0, 0, 0});
-  if (dot(face, normals) < 0) std::swap(corners[1], corners[2]);
+  if (use_ == MeshUse::shown && dot(face, normals) < 0) std::swap(corners[1], corners[2]);
   triangles_.push_back(std::move(corners));
 }
 
@@ -76,13 +76,18 @@ namespace {
 /// Triangles by texture, in the order in which the textures come first.
 class Parts {
  public:
+  explicit Parts(MeshUse use) : use_(use) {}
+
   MeshMaker& of(const std::shared_ptr<const Block>& texture) {
     for (MeshPart& part : made.parts)
-      if (part.texture == texture) return part.mesh;
-    made.parts.push_back({{}, texture});
+      if (part.texture == texture || use_ == MeshUse::camera) return part.mesh;
+    made.parts.push_back({MeshMaker(use_), texture});
     return made.parts.back().mesh;
   }
   MadeMesh made;
+
+ private:
+  MeshUse use_;
 };
 
 // ---- Polygons.
@@ -126,8 +131,8 @@ std::array<std::array<double, 2>, 3> read_uvs(Arguments& a) {
   return uv;
 }
 
-MadeMesh make_mesh1(Context& context, Arguments& a) {
-  Parts parts;
+MadeMesh make_mesh1(Context& context, Arguments& a, MeshUse use) {
+  Parts parts(use);
   while (const Block* const block = a.peek_block()) {
     const bool smooth = block->keyword == "smooth_triangle";
     if (!smooth && block->keyword != "triangle") break;
@@ -215,7 +220,7 @@ void read_list(Context& context, const Block& block, Lists& lists) {
   }
 }
 
-MadeMesh make_mesh2(Context& context, Arguments& a) {
+MadeMesh make_mesh2(Context& context, Arguments& a, MeshUse use) {
   Lists lists;
   while (const Block* const block = a.peek_block()) {
     const std::string_view k = block->keyword;
@@ -228,7 +233,7 @@ MadeMesh make_mesh2(Context& context, Arguments& a) {
   // Without indices of their own, normals and texture coordinates are numbered as vertices.
   const bool normals_by_vertex = lists.normal_faces.empty() && lists.normals.size() == lists.vertices.size();
   const bool uvs_by_vertex = lists.uv_faces.empty() && lists.uvs.size() == lists.vertices.size();
-  Parts parts;
+  Parts parts(use);
   for (std::size_t f = 0; f < lists.faces.size(); ++f) {
     const Lists::Face& face = lists.faces[f];
     std::array<MeshCorner, 3> corners;
@@ -301,10 +306,10 @@ std::optional<MadeMesh> make_polygon(Context& context, Arguments& a) {
 
 }  // namespace
 
-std::optional<MadeMesh> make_mesh(Context& context, Arguments& a) {
+std::optional<MadeMesh> make_mesh(Context& context, Arguments& a, MeshUse use) {
   const std::string_view kind = a.block().keyword;
-  if (kind == "mesh") return make_mesh1(context, a);
-  if (kind == "mesh2") return make_mesh2(context, a);
+  if (kind == "mesh") return make_mesh1(context, a, use);
+  if (kind == "mesh2") return make_mesh2(context, a, use);
   if (kind == "triangle" || kind == "smooth_triangle")
     return make_triangles(context, a.block(), kind == "smooth_triangle", a);
   if (kind == "polygon") return make_polygon(context, a);

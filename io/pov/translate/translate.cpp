@@ -166,6 +166,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
   tree.put(integrator, "depth",
            tree.number(s.settings_place, std::clamp(std::round(s.max_trace_level), 0.0, 64.0)));
+  if (context.samples > 0) tree.put(integrator, "samples", tree.number(top, context.samples));
   tree.put(root, "integrator", integrator);
   tree.put(root, "background", s.sky != nullptr ? s.sky : color_node(tree, s.background_place, s.background));
   if (!(s.ambient == Vec3d{1, 1, 1}))

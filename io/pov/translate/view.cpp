@@ -10,6 +10,7 @@
 
 #include "io/pov/translate/extent.h"
 #include "io/pov/translate/look.h"
+#include "io/pov/translate/mesh_camera.h"
 
 namespace oktett::pov {
 namespace {
@@ -40,6 +41,7 @@ struct PovCamera {
   int cylinder = 1;  ///< 1 to 4
   bool has_angle = false, has_size = false;
   double aperture = 0, blur_samples = 0;
+  std::shared_ptr<const Block> mesh;  ///< mesh_camera, which stands instead of a kind
   Moves moves;
 
   bool orthographic() const { return kind == "orthographic"; }
@@ -51,10 +53,12 @@ void read_camera(Context& context, const Block& block, PovCamera& c) {
   while (!a.at_end()) {
     const Place where = a.where();
     if (take_moves(context, a, c.moves)) continue;
-    if (const Block* const inner = a.peek_block()) {
+    if (const std::shared_ptr<const Block> inner = a.peek_shared_block()) {
       a.take();
       if (inner->keyword == "camera")
         read_camera(context, *inner, c);
+      else if (inner->keyword == "mesh_camera")
+        c.mesh = inner;
       else
         context.tell(fmt::format("camera {}", inner->keyword), where,
                      fmt::format("'{}' of a camera has no meaning here", inner->keyword));
@@ -77,7 +81,7 @@ void read_camera(Context& context, const Block& block, PovCamera& c) {
     } else if (const auto* const kind = std::ranges::find(kCameraKinds, a.peek_word(), &CameraKind::name);
                kind != std::end(kCameraKinds)) {
       a.take();
-      c.kind = kind->name;
+      c.kind = kind->name, c.mesh = nullptr;
       if (c.kind == "cylinder") {
         const double number = a.number("the number of a kind of cylinder");
         if (!(number == 1 || number == 2 || number == 3 || number == 4))
@@ -169,6 +173,7 @@ Node camera_node(Context& context, const Block* block) {
   const Affine& m = c.moves.all;
   c.location = m.point(c.location), c.direction = m.vector(c.direction);
   c.right = m.vector(c.right), c.up = m.vector(c.up);
+  if (c.mesh != nullptr) return mesh_camera_node(context, *c.mesh, c.location.z, c.direction.z);
   Tree& tree = context.tree;
   const Node node = tree.map(where), frame = tree.map(where);
   if (c.kind != "perspective")

@@ -1,0 +1,215 @@
+#include "io/pov/translate/blob_textures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+namespace oktett::pov {
+namespace {
+
+/// Most looks of a blob: textures that show textures may not be nested more deeply.
+constexpr std::size_t kMostLooks = 8;
+
+bool is_look(std::string_view keyword) {
+  return keyword == "texture" || keyword == "pigment" || keyword == "finish" || keyword == "normal";
+}
+
+const Block* block_of(const Element& element) {
+  const auto* const block = std::get_if<std::shared_ptr<const Block>>(&element.value);
+  return block == nullptr ? nullptr : block->get();
+}
+
+bool has_texture(const Block& block) {
+  return std::ranges::any_of(block.elements, [](const Element& e) {
+    const Block* const inner = block_of(e);
+    return inner != nullptr && (inner->keyword == "texture" || inner->keyword == "pigment");
+  });
+}
+
+/// The steps of a function of x, y and z.
+class FieldFunction {
+ public:
+  explicit FieldFunction(const Place& where) {
+    function_.where = where, function_.parameters = {"x", "y", "z"};
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      FunctionNode node;
+      node.op = FunctionNode::Op::parameter, node.index = k;
+      function_.nodes.push_back(node);
+    }
+  }
+
+  using Step = std::uint32_t;
+  Step number(double value) {
+    FunctionNode node;
+    node.number = value;
+    return add(std::move(node));
+  }
+  Step call(std::string_view name, std::initializer_list<Step> operands) {
+    FunctionNode node;
+    node.op = FunctionNode::Op::call, node.name = name, node.operands = operands;
+    return add(std::move(node));
+  }
+  Step sum(Step a, Step b) { return call("+", {a, b}); }
+  Step product(Step a, Step b) { return call("*", {a, b}); }
+
+  /// The magnitude of the field at (x, y, z).
+  Step field(const BlobField& f) {
+    // The place from `from` on, in the space of the component.
+    Step p[3];
+    for (int i = 0; i < 3; ++i) {
+      Step all = number(f.to_own.m[i][3] - f.from[i]);
+      for (std::uint32_t k = 0; k < 3; ++k)
+        if (const double factor = f.to_own.m[i][k]; factor != 0) all = sum(all, product(number(factor), k));
+      p[i] = all;
+    }
+    const Vec3d axis = f.to - f.from;
+    if (const double size = dot(axis, axis); size > 0) {
+      Step along = number(0);
+      for (int i = 0; i < 3; ++i) along = sum(along, product(p[i], number(axis[i] / size)));
+      along = call("max", {number(0), call("min", {number(1), along})});
+      for (int i = 0; i < 3; ++i) p[i] = call("-", {p[i], product(along, number(axis[i]))});
+    }
+    Step distance = number(0);
+    for (const Step each : p) distance = sum(distance, product(each, each));
+    const Step rest = call(
+        "max", {number(0), call("-", {number(1), product(distance, number(1 / (f.radius * f.radius)))})});
+    return product(number(std::abs(f.strength)), product(rest, rest));
+  }
+
+  std::shared_ptr<const Function> finish() { return std::make_shared<const Function>(std::move(function_)); }
+
+ private:
+  Step add(FunctionNode node) {
+    function_.nodes.push_back(std::move(node));
+    return static_cast<Step>(function_.nodes.size() - 1);
+  }
+
+  Function function_;
+};
+
+/// A look and the fields of all components that have it.
+struct Group {
+  std::shared_ptr<const Block> texture;
+  std::vector<BlobField> fields;
+};
+
+std::shared_ptr<Block> texture_block(const Place& where) {
+  auto block = std::make_shared<Block>();
+  block->keyword = "texture", block->where = where;
+  return block;
+}
+
+/// What part of the fields up to group `last` is that of group `last`.
+std::shared_ptr<const Function> share_of(const Place& where, const std::vector<Group>& groups,
+                                         std::size_t last) {
+  FieldFunction f(where);
+  const auto total = [&](const Group& group) {
+    auto all = f.number(0);
+    for (const BlobField& field : group.fields) all = f.sum(all, f.field(field));
+    return all;
+  };
+  auto all = f.number(0);
+  for (std::size_t i = 0; i < last; ++i) all = f.sum(all, total(groups[i]));
+  const auto own = total(groups[last]);
+  // Where no field of these is, the quotient must be some number; a share of 1 would be one of 0 again.
+  f.product(f.number(1 - 1e-7), f.call("/", {own, f.call("max", {f.sum(all, own), f.number(1e-30)})}));
+  return f.finish();
+}
+
+/// The look with its own elements that `blob` has, without its transforms.
+std::shared_ptr<const Block> texture_of_blob(const Block& blob) {
+  auto texture = texture_block(blob.where);
+  for (const Element& e : blob.elements)
+    if (const Block* const inner = block_of(e); inner != nullptr && is_look(inner->keyword))
+      texture->elements.push_back(e);
+  return texture;
+}
+
+}  // namespace
+
+bool has_own_texture(const Block& component) { return has_texture(component); }
+
+std::shared_ptr<const Block> texture_of_component(const Block& component) {
+  // A declared texture that nothing changes is one for all that have it.
+  const Block* only = &component;
+  std::shared_ptr<const Block> named;
+  while (only != nullptr) {
+    const Block* next = nullptr;
+    std::size_t parts = 0;
+    for (const Element& e : only->elements) {
+      const auto* const block = std::get_if<std::shared_ptr<const Block>>(&e.value);
+      const bool is_number = std::holds_alternative<Numbers>(e.value);
+      if (only == &component && is_number) continue;
+      ++parts;
+      if (block != nullptr && *block != nullptr && (*block)->keyword == "texture") {
+        next = block->get();
+        if (!next->name.empty()) named = *block;
+      }
+    }
+    if (parts != 1 || next == nullptr) break;
+    if (named.get() == next) return named;
+    only = next;
+  }
+  auto texture = texture_block(component.where);
+  // Numbers and words before the look are those of the shape.
+  const auto first =
+      std::ranges::find_if(component.elements, [](const Element& e) { return block_of(e) != nullptr; });
+  for (auto e = first; e != component.elements.end(); ++e) texture->elements.push_back(*e);
+  return texture;
+}
+
+std::shared_ptr<const Block> blended_texture(Context& context, const Block& blob,
+                                             const std::vector<BlobPart>& parts) {
+  if (std::ranges::all_of(parts, [](const BlobPart& part) { return part.texture == nullptr; }))
+    return nullptr;
+  std::vector<Group> groups;
+  const auto add = [&](const std::shared_ptr<const Block>& texture, const BlobField& field) {
+    const auto known = std::ranges::find(groups, texture, &Group::texture);
+    if (known != groups.end()) return known->fields.push_back(field);
+    groups.push_back({texture, {field}});
+  };
+  const bool many = [&] {
+    for (const BlobPart& part : parts) add(part.texture, part.field);
+    return groups.size() > kMostLooks;
+  }();
+  if (many) {
+    context.tell("blob looks", blob.where,
+                 fmt::format("of the {} textures of this blob's components {} are shown", groups.size(),
+                             kMostLooks - 1));
+    std::vector<Group> kept;
+    std::swap(groups, kept);
+    std::size_t own = 0;
+    for (const Group& group : kept) {
+      const bool stays = group.texture != nullptr && own++ < kMostLooks - 1;
+      for (const BlobField& field : group.fields) add(stays ? group.texture : nullptr, field);
+    }
+  }
+  for (Group& group : groups)
+    if (group.texture == nullptr) group.texture = texture_of_blob(blob);
+  std::shared_ptr<const Block> look = groups[0].texture;
+  for (std::size_t i = 1; i < groups.size(); ++i) {
+    auto map = std::make_shared<Block>();
+    map->keyword = "texture_map", map->where = blob.where;
+    const auto entry = [&](double at, const std::shared_ptr<const Block>& texture) {
+      auto block = std::make_shared<Block>();
+      block->keyword = "[", block->where = blob.where;
+      Numbers place{};
+      place.v[0] = at;
+      block->elements.push_back({blob.where, place});
+      block->elements.push_back({blob.where, texture});
+      map->elements.push_back({blob.where, std::shared_ptr<const Block>(block)});
+    };
+    entry(0, look), entry(1, groups[i].texture);
+    auto texture = texture_block(blob.where);
+    texture->elements.push_back({blob.where, share_of(blob.where, groups, i)});
+    texture->elements.push_back({blob.where, std::shared_ptr<const Block>(map)});
+    look = texture;
+  }
+  return look;
+}
+
+}  // namespace oktett::pov
