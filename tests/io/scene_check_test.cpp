@@ -38,40 +38,41 @@ TEST(SceneCheck, NothingIsWrong) {
 
 /// Values, keys, names and missing keys in all sections, in the order of the file.
 TEST(SceneCheck, TellsAllErrorsInTheOrderOfTheFile) {
-  EXPECT_EQ(check_v1("objects:\n"
-                     "  - {spher: {}, material: glod}\n"
-                     "  - sphere: {radius: x, center: [0, y, 0, 0], colour: 3}\n"
-                     "  - group: [{box: {min: [0, a, 0]}}, {torus: {major: -1}}]\n"
-                     "  - {sphere: {}, transform: [{scale: b}, {rotate: {axis: [0, 0, 0], angle: 1}}]}\n"
-                     "materials:\n"
-                     "  gold: {ior: 0, opacity: 2, map_color: none.png}\n"
-                     "lights:\n"
-                     "  - point: {positon: [0, 0, 0]}\n"
-                     "  - spot: {color: 3}\n"
-                     "camera: {fov: 200, projection: fish}\n"
-                     "film: {width: 0, height: 0}\n"),
-            (Lines{
-                "scene.yaml:3:6: unknown key 'spher' in an object; did you mean 'sphere'?",
-                "scene.yaml:3:27: unknown material 'glod'; did you mean 'gold'?",
-                "scene.yaml:4:22: expected a number, found 'x'",
-                "scene.yaml:4:33: expected 3 numbers, found 4",
-                "scene.yaml:4:47: unknown key 'colour' in sphere; known are center, radius",
-                "scene.yaml:5:29: expected a number, found 'a'",
-                "scene.yaml:5:54: expected a number of at least 0, found '-1'",
-                "scene.yaml:6:38: expected a number, found 'b'",
-                "scene.yaml:6:58: the axis of a rotation must not be zero",
-                "scene.yaml:8:15: expected a number greater than 0, found '0'",
-                "scene.yaml:8:27: expected a number from 0 to 1, found '2'",
-                "scene.yaml:8:41: 'none.png': no such file",
-                "scene.yaml:10:13: unknown key 'positon' in a point light; did you mean 'position'?",
-                "scene.yaml:11:11: a spot light needs 'position'",
-                "scene.yaml:11:19: expected a colour, [r, g, b] or \"#rrggbb\", found '3'",
-                "scene.yaml:12:15: expected a number greater than 0 and less than 180, found '200'",
-                "scene.yaml:12:32: expected perspective or orthographic or fisheye or ultra_wide_angle or "
-                "omnimax or panoramic or cylindrical or spherical or mesh, found 'fish'",
-                "scene.yaml:13:15: expected a whole number from 1 to 65536, found '0'",
-                "scene.yaml:13:26: expected a whole number from 1 to 65536, found '0'",
-            }));
+  EXPECT_EQ(
+      check_v1("objects:\n"
+               "  - {spher: {}, material: glod}\n"
+               "  - sphere: {radius: x, center: [0, y, 0, 0], colour: 3}\n"
+               "  - group: [{box: {min: [0, a, 0]}}, {torus: {major: -1}}]\n"
+               "  - {sphere: {}, transform: [{scale: b}, {rotate: {axis: [0, 0, 0], angle: 1}}]}\n"
+               "materials:\n"
+               "  gold: {ior: 0, opacity: 2, map_color: none.png}\n"
+               "lights:\n"
+               "  - point: {positon: [0, 0, 0]}\n"
+               "  - spot: {color: 3}\n"
+               "camera: {fov: 200, projection: fish}\n"
+               "film: {width: 0, height: 0}\n"),
+      (Lines{
+          "scene.yaml:3:6: unknown key 'spher' in an object; did you mean 'sphere'?",
+          "scene.yaml:3:27: unknown material 'glod'; did you mean 'gold'?",
+          "scene.yaml:4:22: expected a number, found 'x'",
+          "scene.yaml:4:33: expected 3 numbers, found 4",
+          "scene.yaml:4:47: unknown key 'colour' in sphere; known are center, radius",
+          "scene.yaml:5:29: expected a number, found 'a'",
+          "scene.yaml:5:54: expected a number of at least 0, found '-1'",
+          "scene.yaml:6:38: expected a number, found 'b'",
+          "scene.yaml:6:58: the axis of a rotation must not be zero",
+          "scene.yaml:8:15: expected a number greater than 0, found '0'",
+          "scene.yaml:8:27: expected a number from 0 to 1, found '2'",
+          "scene.yaml:8:41: 'none.png': no such file",
+          "scene.yaml:10:13: unknown key 'positon' in a point light; did you mean 'position'?",
+          "scene.yaml:11:11: a spot light needs 'position'",
+          "scene.yaml:11:19: expected a colour, [r, g, b] or \"#rrggbb\", found '3'",
+          "scene.yaml:12:15: expected a number greater than 0 and less than 180, found '200'",
+          "scene.yaml:12:32: expected perspective or orthographic or fisheye or ultra_wide_angle or "
+          "omnimax or panoramic or cylindrical or spherical or mesh, found 'fish'; did you mean 'mesh'?",
+          "scene.yaml:13:15: expected a whole number from 1 to 65536, found '0'",
+          "scene.yaml:13:26: expected a whole number from 1 to 65536, found '0'",
+      }));
 }
 
 /// What is defined wrongly is known by its name, and what follows from an error is no other error.
