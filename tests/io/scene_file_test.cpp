@@ -90,9 +90,10 @@ TEST(SceneFile, ReadsCurvedProjections) {
   EXPECT_EQ(camera.axis, CylinderAxis::right);
   EXPECT_EQ(camera.along_axis, Projection::orthographic);
   EXPECT_EQ(camera.height, 3);
-  for (const auto& [name, projection] : kProjections)
-    if (projection != Projection::mesh)  // which needs one
-      EXPECT_EQ(read(std::string("projection: ") + name).projection, projection);
+  for (const auto& [name, projection] : kProjections) {
+    if (projection == Projection::mesh) continue;  // it needs one
+    EXPECT_EQ(read(std::string("projection: ") + name).projection, projection);
+  }
   test::expect_errors({
       {"camera: {projection: fisheye, angle: 361}",
        "scene.yaml:2:38: expected a number greater than 0 and of at most 360, found '361'"},
