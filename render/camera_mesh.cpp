@@ -6,6 +6,9 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include "core/mesh_geometry.h"
 
 namespace oktett {
 namespace {
@@ -33,25 +36,23 @@ std::optional<Barycentric> find_in(const std::array<Vec2f, 3>& uv, double u, dou
   return at;
 }
 
+/// Whether no corner of a triangle lacks an index, in a column that is empty if all do.
+bool all_given(const Column<std::uint32_t>& indices, std::size_t triangle) {
+  if (indices.empty()) return false;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (indices[3 * triangle + k] == kNoId) return false;
+  return true;
+}
 bool has_uvs(const TriangleMesh& mesh, std::size_t triangle) {
-  if (mesh.uvs.empty() || mesh.uv_indices.empty()) return false;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (mesh.uv_indices[3 * triangle + k] == kNoId) return false;
-  return true;
+  return !mesh.uvs.empty() && all_given(mesh.uv_indices, triangle);
 }
-
 bool has_normals(const TriangleMesh& mesh, std::size_t triangle) {
-  if (mesh.normals.empty() || mesh.normal_indices.empty()) return false;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (mesh.normal_indices[3 * triangle + k] == kNoId) return false;
-  return true;
+  return !mesh.normals.empty() && all_given(mesh.normal_indices, triangle);
 }
 
-std::array<Vec3d, 3> corners_of(const TriangleMesh& mesh, std::size_t triangle) {
-  std::array<Vec3d, 3> p;
-  for (std::size_t k = 0; k < 3; ++k)
-    p[k] = mesh.origin + Vec3d(mesh.positions[mesh.indices[3 * triangle + k]]);
-  return p;
+/// The mesh that has a face, by the number of the first face of each.
+std::size_t mesh_of(const std::vector<std::size_t>& first, std::size_t face) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(first, face) - first.begin() - 1);
 }
 
 /// The cells that the numbers from `lo` to `hi` meet, of `side` in [0, 1].
@@ -115,7 +116,7 @@ CameraMesh::FacePoint CameraMesh::point_of_uv(double u, double v) const {
   const std::size_t cell = cells_of(v, v, side_).second * side_ + cells_of(u, u, side_).second;
   for (std::uint32_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
     const std::size_t face = cell_faces_[i];
-    const auto mesh = static_cast<std::size_t>(std::ranges::upper_bound(first_, face) - first_.begin() - 1);
+    const std::size_t mesh = mesh_of(first_, face);
     const auto uv = corner_uvs(*meshes_[mesh].mesh, static_cast<std::uint32_t>(face - first_[mesh]));
     if (const auto at = find_in(uv, u, v)) return {face, at->u, at->v};
   }
@@ -146,19 +147,20 @@ Ray CameraMesh::ray(const FilmPlace& place, const Vec3d& origin) const {
   ray.direction = {0, 0, -1}, ray.tmax = 0;
   const FacePoint at = point_at(place);
   if (at.face == kNoFace) return ray;
-  const auto m = static_cast<std::size_t>(std::ranges::upper_bound(first_, at.face) - first_.begin() - 1);
+  const std::size_t m = mesh_of(first_, at.face);
   const TriangleMesh& mesh = *meshes_[m].mesh;
   const std::size_t triangle = at.face - first_[m];
-  const std::array<Vec3d, 3> p = corners_of(mesh, triangle);
+  std::array<Vec3d, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.origin + corner(mesh, triangle, k);
   const auto blend = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return a * (1 - at.u - at.v) + b * at.u + c * at.v;
   };
   Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
   if (settings_.smooth && settings_.order == FaceOrder::uv && has_normals(mesh, triangle)) {
-    const auto corner = [&](std::size_t k) {
+    const auto at_corner = [&](std::size_t k) {
       return normalize(Vec3d(mesh.normals[mesh.normal_indices[3 * triangle + k]]));
     };
-    normal = blend(corner(0), corner(1), corner(2));
+    normal = blend(at_corner(0), at_corner(1), at_corner(2));
   }
   normal = inverses_[m].normal_by_inverse(normal);
   const double size = length(normal);

@@ -13,31 +13,19 @@
 #include "io/mesh/contour/rims.h"
 #include "io/mesh/contour/sheets.h"
 #include "io/mesh/contour/signs.h"
+#include "kernels/closed/closest_triangle.h"
 
 namespace oktett {
 namespace {
 
-/// The distance of a point from a triangle, squared (Ericson 2005, "Real-Time Collision Detection", 5.1.5, by
-/// regions of the triangle).
 double squared_distance(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const auto to_edge = [&](const Vec3d& from, const Vec3d& to) {
-    const Vec3d edge = to - from;
-    const double size = dot(edge, edge);
-    const double s = size > 0 ? std::clamp(dot(p - from, edge) / size, 0.0, 1.0) : 0;
-    const Vec3d off = p - (from + edge * s);
-    return dot(off, off);
-  };
-  const Vec3d n = cross(b - a, c - a);
-  const double area = dot(n, n);
-  if (area > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-      dot(cross(a - c, p - c), n) >= 0) {
-    const double off = dot(p - a, n);
-    return off * off / area;
-  }
-  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+  using D = Simd<double, 1, ScalarIsa>;
+  return only_lane(
+      closest_on_triangle(broadcast<D>(p), broadcast<D>(a), broadcast<D>(b), broadcast<D>(c)).d2);
 }
 
-/// The triangles of a crossing: corners are vertices, those from `vertices_` on are further ones.
+/// The triangles of a crossing. Their corners are numbers of vertices; the crossing itself, if it is one, has
+/// a number behind those of all sheets.
 struct Patch {
   std::array<std::array<std::uint32_t, 3>, 8> triangles;
   std::uint32_t count = 0;
