@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/noise_steps.h"
 #include "core/random.h"
 
 namespace oktett {
@@ -16,6 +17,8 @@ std::uint64_t lattice_bits(std::int64_t x, std::int64_t y, std::int64_t z) {
 }
 
 namespace {
+
+using noise_steps::between, noise_steps::fade, noise_steps::mix;
 
 /// A coordinate as the integer below it and what it is above that; with 0 and NaN where it is not finite.
 struct CellCoordinate {
@@ -64,19 +67,8 @@ Vec3d edge_vector(std::uint64_t bits) {
   return {edge_product(bits, {1, 0, 0}), edge_product(bits, {0, 1, 0}), edge_product(bits, {0, 0, 1})};
 }
 
-/// 0 at 0 and 1 at 1, with first and second derivatives of 0 there.
-double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+/// The derivative of fade.
 double fade_slope(double t) { return 30 * (t * t) * ((t - 1) * (t - 1)); }
-
-double mix(double a, double b, double t) { return a + (b - a) * t; }
-
-/// From the values at the corners, and the faded place between them.
-template <class T>
-T between(const T (&c)[8], const T (&t)[3]) {
-  const T low = mix(mix(c[0], c[1], t[0]), mix(c[2], c[3], t[0]), t[1]);
-  const T high = mix(mix(c[4], c[5], t[0]), mix(c[6], c[7], t[0]), t[1]);
-  return mix(low, high, t[2]);
-}
 
 /// Between four edges of the cell along one of the axes; rise(i, j) is of the edge from corner i to j.
 template <class T, class Rise>

@@ -11,6 +11,7 @@
 
 #include "core/isa_select.h"
 #include "core/noise.h"
+#include "core/noise_steps.h"
 #include "core/platform.h"
 #include "core/random.h"
 
@@ -45,8 +46,6 @@ struct NoiseLanes {
     const U first = k == 0 ? a : k == 1 ? b : c, second = k == 0 ? b : k == 1 ? c : a;
     return std::bit_cast<D>(first ^ bits << 63) + std::bit_cast<D>(second ^ (bits >> 1) << 63);
   }
-  static OKTETT_INLINE D fade(const D& t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-  static OKTETT_INLINE D mix(const D& a, const D& b, const D& t) { return a + (b - a) * t; }
 
   /// All coordinates are less than 2^51 in size.
   static OKTETT_INLINE D noise(const D (&p)[3]) {
@@ -61,7 +60,7 @@ struct NoiseLanes {
       cell[k] = std::bit_cast<U>(sum) - std::bit_cast<std::uint64_t>(kWhole) + above;
       // Not -0.
       f[k] = (p[k] - floor) + 0.0;
-      t[k] = fade(f[k]);
+      t[k] = noise_steps::fade<D>(f[k]);
     }
     U of_x[2], of_xy[4];
     for (std::uint64_t i = 0; i < 2; ++i) of_x[i] = next(U{}, cell[0] + i);
@@ -71,9 +70,7 @@ struct NoiseLanes {
     for (std::uint64_t i = 0; i < 8; ++i)
       c[i] = edge_product(next(of_xy[i & 3], cell[2] + (i >> 2)), (i & 1) != 0 ? one_less[0] : f[0],
                           (i & 2) != 0 ? one_less[1] : f[1], (i & 4) != 0 ? one_less[2] : f[2]);
-    const D low = mix(mix(c[0], c[1], t[0]), mix(c[2], c[3], t[0]), t[1]);
-    const D high = mix(mix(c[4], c[5], t[0]), mix(c[6], c[7], t[0]), t[1]);
-    return mix(low, high, t[2]);
+    return noise_steps::between<D>(c, t);
   }
 };
 
