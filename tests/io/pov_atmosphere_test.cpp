@@ -164,6 +164,23 @@ TEST_F(PovAtmosphere, ImagesThatAreNotRepeatedEnd) {
             std::string::npos);
 }
 
+// Whether the numbers of an image are decoded depends on the kind of the file, its gamma and the version.
+TEST_F(PovAtmosphere, NumbersOfImagesAreDecodedAsInPovRay) {
+  dir.write("grey.img", "P3\n1 1\n255\n128 128 128\n");
+  const auto decoded = [&](const std::string& settings, const std::string& kind, const std::string& gamma) {
+    const std::string map = "image_map { " + kind + " \"grey.img\" " + gamma + " }";
+    return section(settings + " sphere { 0, 1 pigment { " + map + " } }", "materials").find("color_space") ==
+           std::string::npos;
+  };
+  for (const char* kind : {"png", "jpeg", "tga", "bmp", "gif"}) EXPECT_TRUE(decoded("", kind, "")) << kind;
+  for (const char* kind : {"ppm", "pgm", "tiff"}) EXPECT_FALSE(decoded("", kind, "")) << kind;
+  EXPECT_FALSE(decoded("", "png", "gamma 1.0"));
+  EXPECT_TRUE(decoded("", "ppm", "gamma 2.2"));
+  EXPECT_TRUE(decoded("", "ppm", "gamma srgb"));
+  EXPECT_FALSE(decoded("#version 3.6; global_settings { assumed_gamma 1 }", "png", ""));
+  EXPECT_FALSE(decoded("#version 3.7; global_settings { assumed_gamma 2.2 }", "png", ""));
+}
+
 TEST_F(PovAtmosphere, DefaultsNeedNoHash) {
   EXPECT_EQ(section("default { finish { ambient 0.5 } } sphere { 0, 1 }", "materials"),
             "{material: {color: [0, 0, 0], ambient: 0.5, diffuse: 0.6}}");

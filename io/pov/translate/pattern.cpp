@@ -482,13 +482,13 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   p.word = "image_map", p.where = block.where, p.key = "", p.own = tree.map(block.where), p.is_list = false;
   std::string_view onto = "planar";
   std::optional<Place> once;
+  // Numbers of some kinds of files are taken as they are, and so are all in scenes of before 3.7.
+  bool decoded = context_.document.version >= 3.7;
   while (!a.at_end()) {
     const Place where = a.where();
     const Element& element = a.take();
     if (const auto* const path = std::get_if<std::string>(&element.value)) {
       const Node image = tree.map(where, "file", tree.text(where, find_image(context_, where, *path)));
-      // Its numbers are those of the scene's gamma then.
-      if (context_.gamma > 1.6) tree.put(image, "color_space", tree.word(where, "linear"));
       set(p.own, "of", image);
       p.image = image;
       p.key = "projected";
@@ -500,8 +500,15 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
     } else if (word->text == "once") {
       once = where;
+    } else if (word->text == "ppm" || word->text == "pgm" || word->text == "tiff") {
+      decoded = false;
+    } else if (word->text == "gamma") {
+      decoded = !a.is_numbers() || a.number("a gamma") > 1.5;
     }
   }
+  // Where light is computed in the screen's gamma, decoded numbers are those of the file, too.
+  if (p.image != nullptr && (!decoded || context_.gamma > 1.6))
+    tree.put(p.image, "color_space", tree.word(p.where, "linear"));
   p.once = once && onto == "planar";
   if (once && !p.once)
     context_.tell("once", *once, "'once' of an image that is not planar has no meaning here: it repeats");
