@@ -63,6 +63,7 @@ struct ShadingColumns {
   static constexpr std::size_t kGroup = 16;  ///< the most lanes of any instruction set
 
   std::size_t count = 0;
+  float cutoff = 0;               ///< IntegratorSettings::cutoff
   std::uint32_t ray[kMost];       ///< entry of the wavefront's rays
   std::uint32_t material[kMost];  ///< index of the ShadingMaterial
 
@@ -88,9 +89,6 @@ struct ShadingColumns {
 
   RaisedPoints* raised = nullptr;  ///< of the hits
 };
-
-/// Rays that change a pixel by less than this are not traced.
-inline constexpr float kLeastThroughput = 1 / 4096.0f;
 
 /// The mirrored or the refracted rays of hits; entry k leaves hit k.
 struct BounceColumns {

@@ -2,6 +2,7 @@
 
 #include "io/scene/pov_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -498,7 +499,35 @@ TEST(PovScene, LightsAndSurroundings) {
             "{direction: [1, -5, 0], from: [0, 5, 0], color: [1, 1, 1]}}]");
   EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
   EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");
-  EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 7}");
+  EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 6, cutoff: 0.00392156862745098}");
+}
+
+/// Light that a mirror, one below or above it and the first one again send from a wall to the camera. The
+/// levels and the weights at which POV-Ray 3.7 ends were seen by running it.
+TEST(PovScene, ReflectionsEndAsInPovRay) {
+  const PovFiles files;
+  const auto seen = [&](const std::string& settings, double first, double second) {
+    Scene scene = load_scene(files.dir.write(
+        "scene.pov",
+        fmt::format("#version 3.7;\nglobal_settings {{ assumed_gamma 1 {} }}\n"
+                    "camera {{ location <0,0,-3> look_at 0 angle 1 }}\n"
+                    "plane {{ z, 0 rotate x*-45 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ y, -5 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ y, 5 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ z, -20 pigment {{ rgb 1 }} finish {{ ambient 0.5 diffuse 0 }} }}\n",
+                    settings, first, second, second)));
+    scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
+    return render(scene, {}).picture.find("R")->values[0];
+  };
+  const float all = seen("", 1, 1);
+  EXPECT_NEAR(all, 0.5, 1e-6);
+  EXPECT_EQ(seen("max_trace_level 3", 1, 1), 0);
+  EXPECT_EQ(seen("max_trace_level 4", 1, 1), all);
+  EXPECT_EQ(seen("", 1, 0.0038), 0);
+  EXPECT_NEAR(seen("", 1, 0.0041), 0.5 * 0.0041, 1e-6);
+  EXPECT_NEAR(seen("", 0.07, 1), 0.5 * 0.07 * 0.07, 1e-6);
+  EXPECT_EQ(seen("", 0.06, 1), 0);
+  EXPECT_NEAR(seen("adc_bailout 0", 0.06, 1), 0.5 * 0.06 * 0.06, 1e-6);
 }
 
 TEST(PovScene, WhatCannotBeMeantIsToldOnce) {

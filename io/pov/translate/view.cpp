@@ -398,6 +398,8 @@ void read_global_settings(Context& context, const Block& block, Surroundings& s)
       if (!a.at_end()) a.take();
     } else if (a.take_word("max_trace_level")) {
       s.max_trace_level = a.number("a number");
+    } else if (a.take_word("adc_bailout")) {
+      s.adc_bailout = a.number("a number");
     } else if (a.take_word("ambient_light")) {
       s.ambient = a.vector("a colour");
     } else if (const Block* const inner = a.peek_block()) {
