@@ -135,6 +135,8 @@ TEST(PovQueries, InsideFollowsCombinations) {
   EXPECT_EQ(inside("union { sphere { 0, 1 } sphere { 5*x, 1 inverse } }", "<5,0,0>"), "0");
   EXPECT_EQ(inside("union { triangle { 0, x, y } sphere { 0, 1 } }", "0.2*z"), "1");
   EXPECT_EQ(inside("torus { 2, 0.5 rotate 90*x }", "<0,2.2,0>"), "1");
+  EXPECT_EQ(inside("ovus { 1, 0.5 }", "<0.93,0.4,0>"), "1");
+  EXPECT_EQ(inside("ovus { 1, 0.5 }", "<0.94,0.4,0>"), "0");
   EXPECT_NE(inside("triangle { 0, x, y }", "0.2*z").find("'inside' is not available for this object"),
             std::string::npos);
 }

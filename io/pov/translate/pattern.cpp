@@ -265,6 +265,7 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
   } else if (p.word == "gradient") {
     const Vec3d direction = a.vector("a vector");
     tree.put(p.own, "direction", tree.vector(p.where, direction));
+    p.direction = direction;
     if (!(length(direction) > 0)) p.key = "";
   } else if (p.word == "spiral1" || p.word == "spiral2") {
     put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));

@@ -19,7 +19,8 @@ struct PovPattern {
   Node image = nullptr;  ///< of an image, its texture by uv
   bool is_list = false;  ///< it has a list of colours in place of a map
   bool uses_uv = false;
-  bool once = false;  ///< of an image in the unit square of x and y: it is not repeated
+  bool once = false;         ///< of an image in the unit square of x and y: it is not repeated
+  Vec3d direction{0, 1, 0};  ///< of a gradient
 
   /// Transforms, and warps as items of scene files, in the order in which they are applied to the pattern.
   std::vector<std::variant<Moves, Node>> modifiers;
