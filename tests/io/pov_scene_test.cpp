@@ -2,6 +2,7 @@
 
 #include "io/scene/pov_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -330,6 +331,35 @@ TEST(PovScene, PatternsAreTextures) {
   // Places outside of 0 to 1 show what lies between them.
   EXPECT_EQ(color("boxed color_map { [-1 rgb 0] [1 rgb 1] }"),
             "{boxed: {map: [[0, [0.5, 0.5, 0.5]], [1, [1, 1, 1]]]}}");
+}
+
+// The colours at the middles of cells around the origin, as POV-Ray 3.7.0.10 has them.
+TEST(PovScene, SquaresAndTrianglesHaveTheirOrder) {
+  const PovFiles files;
+  struct Shown {
+    const char* pattern;
+    double x, z;
+    int number;
+  };
+  const Shown shown[] = {
+      {"square", 0.5, 0.5, 0},        {"square", 0.5, 1.5, 1},        {"square", 1.5, 1.5, 2},
+      {"square", 1.5, 0.5, 3},        {"square", -0.5, -0.5, 2},      {"square", -1.5, -1.5, 0},
+      {"triangular", 0.5, 0.2, 0},    {"triangular", 0.01, 0.6, 1},   {"triangular", -0.5, 0.2, 2},
+      {"triangular", -0.5, -0.2, 3},  {"triangular", 0.01, -0.6, 4},  {"triangular", 0.5, -0.2, 5},
+      {"triangular", 1.5, 0.2, 4},    {"triangular", 1.01, 0.6, 3},   {"triangular", -1.01, 0.6, 5},
+      {"triangular", -1.01, -0.3, 0}, {"triangular", 1.51, -0.05, 1},
+  };
+  std::string text = "#version 3.7;\n";
+  for (const Shown& s : shown)
+    text += fmt::format(
+        "#declare F = function {{ pigment {{ {} rgb 0 rgb 0.1 rgb 0.2 rgb 0.3 rgb 0.4 rgb 0.5 }} }} "
+        "sphere {{ <F({}, 0.3, {}).red, 0, 0>, 1 }}\n",
+        s.pattern, s.x, s.z);
+  const Scene scene = load_scene(files.dir.write("cells.pov", text));
+  ASSERT_EQ(scene.objects.size(), std::size(shown));
+  for (std::size_t i = 0; i < std::size(shown); ++i)
+    EXPECT_NEAR(std::get<SphereShape>(scene.objects[i].shape).center.x, 0.1 * shown[i].number, 1e-6)
+        << shown[i].pattern << " " << shown[i].x << " " << shown[i].z;
 }
 
 TEST(PovScene, TexturesInPatternsAndLayers) {
@@ -663,6 +693,10 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
           {std::string("pigment { ") + pattern + map + "}", std::string("F(X, Y, Z).") + channel});
   cases.push_back({"pigment { checker rgb <1, 0.5, 0>, rgb <0.25, 0, 1> scale 0.4 }", "F(X, Y, Z).red"});
   cases.push_back({"pigment { checker scale 0.4 }", "F(2 * X, Y, Z).green"});
+  for (const char* channel : {"red", "green", "blue"}) {
+    cases.push_back({"pigment { square scale 0.4 }", std::string("F(X, Y, Z).") + channel});
+    cases.push_back({"pigment { triangular scale 0.3 }", std::string("F(X, Y, Z).") + channel});
+  }
   cases.push_back({"pigment { rgb <1, 0.5, 0> }", "F(X, Y, Z).green"});
   cases.push_back({"pigment { marble rotate 40*z }", "F(X, Y, Z).gray"});
   cases.push_back({"pattern { checker scale 0.3 }", "F(X, Y, Z)"});

@@ -116,7 +116,7 @@ PatternFormula pattern_formula(const PovPattern& pattern, const std::array<std::
   if (word == "wood") return {at("hypot($0, $1)"), true, true};
   if (word == "radial") return {at("0.75 + atan2($0, $2) / (2 * pi)"), true};
   if (word == "onion") return {filled("$0 - floor($0)", {at("sqrt($0^2 + $1^2 + $2^2)")})};
-  if (word == "checker") return {filled("$0 - 2 * floor($0 / 2)", {at("floor($0) + floor($1) + floor($2)")})};
+  if (pattern.is_list) return {number_formula(word, p)};
   if (word == "gradient") {
     const Vec3d d = normalize(pattern.direction);
     const std::string along = filled("$0 * $3 + $1 * $4 + $2 * $5",

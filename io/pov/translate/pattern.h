@@ -1,7 +1,9 @@
 #pragma once
 /// \file Patterns: what pigments, normals and textures have in common. Within io/ only.
 
+#include <array>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -35,6 +37,10 @@ struct PovPattern {
 
 /// The colours that the pattern has if none are given; `is_list` patterns only.
 std::vector<PovColor> default_colors(const PovPattern& pattern);
+
+/// The number of the colour that a pattern with a list of colours shows at the place p, as an expression.
+/// Empty if it has no formula.
+std::string number_formula(std::string_view pattern, const std::array<std::string, 3>& p);
 
 /// Reads patterns.
 class PatternReader {
