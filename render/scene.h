@@ -423,6 +423,7 @@ struct LightTraits {
   std::uint32_t list = kNoId;  ///< index into Scene::light_lists; kNoId: it lights all objects
   bool shadows = true;     ///< in Whitted's model, of lights that are no environment: things are in its way
   bool highlights = true;  ///< likewise: it shows Phong's highlights
+  bool dimmed_by_fog = false;  ///< likewise: fog on its way takes light
 };
 
 /// The group of all light that is in no other: that of lights without a group, the background and media.

@@ -34,6 +34,7 @@ struct LightSource {
   double tightness = 0;    ///< of a spot
   bool shadows = true;     ///< things are in its way
   bool highlights = true;  ///< it shows Phong's highlights
+  bool dimmed_by_fog = false;  ///< fog on its way takes light
 };
 
 /// What local shading needs of a material, in one cache line. Numbered like World::materials.

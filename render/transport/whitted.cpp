@@ -236,7 +236,7 @@ void push_shadow_rays(const RenderContext& context, const Wavefront& wavefront, 
     keep_listed(context, wavefront, found, light.list, c, first, queue);
     out.size = queue.size();
   }
-  finish_light_rays(light, first, queue);
+  finish_light_rays(light, context.fogs, first, queue);
 }
 
 /// Which points of the area lights the hit of a ray asks.

@@ -59,6 +59,18 @@ TEST_F(PovAtmosphere, FogsAreFogs) {
   EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"), "");
 }
 
+TEST_F(PovAtmosphere, FogDimsTheLampsThatSaySo) {
+  const auto light = [&](const std::string& words) {
+    return section("light_source { <0, 5, 0>, rgb 1 " + words + " }", "lights");
+  };
+  const std::string plain = "[{point: {position: [0, 5, 0], color: [1, 1, 1]}}]";
+  EXPECT_EQ(light(""), plain);
+  EXPECT_EQ(light("media_attenuation on"),
+            "[{point: {position: [0, 5, 0], color: [1, 1, 1], dimmed_by_fog: true}}]");
+  EXPECT_EQ(light("media_attenuation off"), plain);
+  EXPECT_EQ(light("media_attenuation on media_interaction off"), plain);
+}
+
 TEST_F(PovAtmosphere, RainbowsAreRainbows) {
   EXPECT_EQ(
       section("rainbow { direction <0, -1, 1> angle 41 width 3 distance 50 arc_angle 120 falloff_angle 60 "
