@@ -7,8 +7,8 @@ namespace oktett {
 
 namespace {
 
-/// Samples along a ray.
-constexpr int kSamples = 768;
+/// Stretches between samples along a ray, and more where an oracle spares most of them.
+constexpr int kStretches = 768, kManyStretches = 8 * kStretches;
 /// Samples within the rounding of a hit at which three do not show a crossing.
 constexpr int kFineSamples = 1024;
 
@@ -28,6 +28,8 @@ long double greatest_sum(const Affine& m, const Vec3l& p) {
 AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray, bool rounded)
     : f_(oracle.f),
       where_(oracle.where),
+      clear_(oracle.clear),
+      stretches_(oracle.clear ? kManyStretches : kStretches),
       o_(mapped(to_own, Vec3l(ray.origin))),
       d_(mapped(to_own, Vec3l(ray.direction), 0)),
       rounding_(rounded ? 0x1p-24L : 0),
@@ -37,7 +39,7 @@ AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& r
   const Vec3l half = (Vec3l(oracle.hi) - Vec3l(oracle.lo)) * 0.5L;
   const long double dd = dot(d_, d_), b = dot(m, d_) / dd;
   const long double h = dot(half, half) * 1.02L - (dot(m, m) - b * b * dd);
-  size_ = std::sqrt(dot(half, half) / dd);
+  size_ = std::sqrt(dot(half, half) / dd), off_ = std::sqrt(dot(o_, o_) / dd);
   if (h < 0) return;
   const long double w = std::sqrt(h / dd);
   begin = std::max(-b - w, static_cast<long double>(ray.tmin));
@@ -45,7 +47,7 @@ AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& r
 }
 
 long double AlongRay::slack(long double t) const {
-  const long double far = std::abs(t) + std::sqrt(dot(o_, o_) / dot(d_, d_));
+  const long double far = std::abs(t) + off_;
   return 0x1p-24L * 1.01L * std::abs(t) + (0x1p-44L + 2 * rounding_) * far + 0x1p-36L * size_;
 }
 
@@ -76,17 +78,50 @@ long double AlongRay::room(long double t) const {
 
 std::vector<long double> AlongRay::crossings() const {
   std::vector<long double> found;
-  if (!(begin < end)) return found;
-  long double t0 = begin, f0 = (*this)(t0);
-  for (int i = 1; i <= kSamples; ++i) {
-    const long double t1 = begin + (end - begin) * i / kSamples, f1 = (*this)(t1);
-    if ((f0 < 0) != (f1 < 0)) {
-      const long double t = bisected(*this, t0, t1);
-      if (ends(t) < 0) found.push_back(t);
-    }
-    t0 = t1, f0 = f1;
-  }
+  Sample known;
+  if (begin < end) search(0, stretches_, known, found);
   return found;
+}
+
+long double AlongRay::place(int sample) const { return begin + (end - begin) * sample / stretches_; }
+
+/// Adds the crossings between two samples. `known` is the last sample that was taken.
+void AlongRay::search(int first, int last, Sample& known, std::vector<long double>& found) const {
+  const long double t0 = place(first), t1 = place(last);
+  if (clear_ && clear_(Vec3d(o_ + d_ * t0), Vec3d(o_ + d_ * t1))) return;
+  if (last - first > 1) {
+    const int middle = first + (last - first) / 2;
+    search(first, middle, known, found);
+    search(middle, last, known, found);
+    return;
+  }
+  const long double f0 = known.at == first ? known.f : (*this)(t0), f1 = (*this)(t1);
+  known = {last, f1};
+  if ((f0 < 0) == (f1 < 0)) return;
+  if (const long double t = between(t0, f0, t1, f1); ends(t) < 0) found.push_back(t);
+}
+
+/// Where f changes its sign between t0 and t1, where it is f0 and f1, by ITP (Oliveira and Takahashi 2020):
+/// secants that are drawn towards the middle, at most one step more than bisection.
+long double AlongRay::between(long double t0, long double f0, long double t1, long double f1) const {
+  const bool negative = f0 < 0;
+  const long double enough = 0x1p-14L * slack(t0), whole = t1 - t0;
+  // How far from the middle a step may be, so that bisection could still end in time.
+  long double reach = enough * std::exp2(std::ceil(std::log2(std::max(whole / enough, 1.0L))) + 1);
+  while (t1 - t0 > enough) {
+    const long double middle = t0 + (t1 - t0) / 2, secant = (f1 * t0 - f0 * t1) / (f1 - f0);
+    const long double towards = middle < secant ? -1 : 1, draw = 0.2L / whole * (t1 - t0) * (t1 - t0);
+    long double t = middle;
+    if (draw < std::abs(middle - secant)) t = secant + towards * draw;
+    reach /= 2;
+    const long double most = std::max(reach - (t1 - t0) / 2, 0.0L);
+    if (!(std::abs(t - middle) <= most)) t = middle - towards * most;
+    if (!(t > t0 && t < t1)) t = middle;
+    if (!(t > t0 && t < t1)) break;
+    const long double f = (*this)(t);
+    ((f < 0) == negative ? t0 : t1) = t, ((f < 0) == negative ? f0 : f1) = f;
+  }
+  return t0 + (t1 - t0) / 2;
 }
 
 int AlongRay::ends(long double t) const {

@@ -27,6 +27,7 @@ Real outside(const Vec3d& lo, const Vec3d& hi, const Vec3l& p) {
 }
 
 void cut(ExactOracle& oracle, const SurfaceFunction& where, bool open) {
+  oracle.clear = {};
   if (open)
     oracle.where = where;
   else
@@ -35,8 +36,20 @@ void cut(ExactOracle& oracle, const SurfaceFunction& where, bool open) {
 
 void cut_by_box(ExactOracle& oracle, const Vec3d& lo, const Vec3d& hi, bool open) {
   const auto beyond = [lo, hi](const Vec3l& p) { return outside(lo, hi, p); };
+  ClearWay clear;
+  if (oracle.clear)
+    clear = [lo, hi, open, f = oracle.f, uncut = oracle.clear](const Vec3d& a, const Vec3d& b) {
+      const Vec3<Enclosure> way = box_about(a, b);
+      bool inside = true;
+      for (int k = 0; k < 3; ++k) {
+        if (way[k].hi < lo[k] || way[k].lo > hi[k]) return true;
+        inside &= way[k].lo > lo[k] && way[k].hi < hi[k];
+      }
+      // A face of the box is none where the function is positive.
+      return uncut(a, b) && (inside || open || f(Vec3l(a)) > 0);
+    };
   cut(oracle, beyond, open);
-  oracle.lo = lo, oracle.hi = hi;
+  oracle.clear = clear, oracle.lo = lo, oracle.hi = hi;
 }
 
 ExactOracle oracle_of(const TorusShape& s) {

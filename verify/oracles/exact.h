@@ -1,6 +1,6 @@
 #pragma once
-/// \file Independent functions of the exact surfaces, in long double, and what is asked of the tracer by
-/// them: dense sampling along a ray, then bisection.
+/// \file Independent functions of the exact surfaces, in long double, and bounds that say where they have no
+/// zero.
 
 #include <functional>
 #include <string>
@@ -28,6 +28,10 @@ long double bisected(const F& f, long double t0, long double t1) {
   return t0 + (t1 - t0) / 2;
 }
 
+/// Whether a function surely keeps its sign all the way from a to b, or changes it only where no surface is.
+/// False where that is not clear. The points may be off by 2^-52 of their coordinates.
+using ClearWay = std::function<bool(const Vec3d& a, const Vec3d& b)>;
+
 /// An exact surface and what it should be.
 struct ExactOracle {
   ExactShape shape;
@@ -38,6 +42,9 @@ struct ExactOracle {
   /// If set, the surface is only where this is not positive: what is open ends there.
   SurfaceFunction where = {};
   std::string name = {};
+  /// If set, what spares a search the stretches of a ray where nothing is. By bounds of its own: not from the
+  /// kernel.
+  ClearWay clear = {};
 
   /// Makes the box hold a ball.
   void grow(const Vec3d& center, double radius);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "verify/oracles/enclosure.h"
 #include "verify/oracles/exact.h"
 
 namespace oktett {
@@ -12,9 +13,19 @@ using Real = long double;
 /// How far outside of a box p is, negative inside.
 Real outside(const Vec3d& lo, const Vec3d& hi, const Vec3l& p);
 
+/// A clear way by `f`, which takes a box and gives an enclosure of the oracle's function.
+template <class F>
+ClearWay clear_by(const F& f) {
+  return [f](const Vec3d& a, const Vec3d& b) {
+    const Enclosure values = f(box_about(a, b));
+    // What is infinite may count as outside.
+    return values.positive() || (values.negative() && values.lo > -HUGE_VAL);
+  };
+}
+
 /// Cuts off what is where `where` is positive; what is `open` gets no lid there.
 void cut(ExactOracle& oracle, const SurfaceFunction& where, bool open);
-/// The same for what is outside of a box, which becomes the oracle's.
+/// The same for what is outside of a box, which becomes the oracle's. Only this keeps a clear way.
 void cut_by_box(ExactOracle& oracle, const Vec3d& lo, const Vec3d& hi, bool open);
 
 /// A random surface of one form, the same for the same numbers.

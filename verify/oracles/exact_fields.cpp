@@ -15,6 +15,9 @@ namespace {
 
 ExactOracle oracle_of(const BlobTreeShape& shape);
 
+/// What bounds of distances are widened by.
+constexpr double kFieldRoom = 1e-12;
+
 /// Balls by the cells of a grid that they reach into, so that a thousand can be added up.
 class BallGrid {
  public:
@@ -117,6 +120,9 @@ ExactOracle oracle_of(const MetaballsShape& shape) {
     if (b.strength > 0) oracle.grow(b.center, b.radius);
   const auto grid = std::make_shared<BallGrid>(shape, oracle.lo, oracle.hi);
   oracle.f = [grid](const Vec3l& p) { return (*grid)(p); };
+  // Bounds of many balls at one place add up to more than samples take.
+  constexpr std::size_t kFew = 16;
+  if (shape.balls.size() <= kFew) oracle.clear = oracle_of(as_tree(shape)).clear;
   return oracle;
 }
 
@@ -130,11 +136,15 @@ std::vector<ExactCase> metaball_cases() {
 
 namespace {
 
-Real square(const Vec3l& v) { return dot(v, v); }
+template <class R>
+R square(const Vec3<R>& v) {
+  return dot(v, v);
+}
 
-Real segment_square(const Vec3l& a, const Vec3l& b, const Vec3l& p) {
-  const Vec3l e = b - a;
-  const Real h = square(e) > 0 ? std::clamp(dot(p - a, e) / square(e), Real{0}, Real{1}) : Real{0};
+template <class R>
+R segment_square(const Vec3<R>& a, const Vec3<R>& b, const Vec3<R>& p) {
+  const Vec3<R> e = b - a;
+  const R h = square(e) > 0 ? std::clamp(dot(p - a, e) / square(e), R{0}, R{1}) : R{0};
   return square(p - a - e * h);
 }
 
@@ -170,41 +180,60 @@ Body body_of(const decltype(FieldElement::skeleton)& skeleton) {
   return body;
 }
 
-Real skeleton_square(const PointSkeleton& s, const Body&, const Vec3l& p) {
-  return square(p - Vec3l(s.center));
+template <class R>
+R skeleton_square(const PointSkeleton& s, const Body&, const Vec3<R>& p) {
+  return square(p - Vec3<R>(s.center));
 }
 
-Real skeleton_square(const SegmentSkeleton& s, const Body&, const Vec3l& p) {
-  return segment_square(Vec3l(s.from), Vec3l(s.to), p);
+template <class R>
+R skeleton_square(const SegmentSkeleton& s, const Body&, const Vec3<R>& p) {
+  return segment_square(Vec3<R>(s.from), Vec3<R>(s.to), p);
 }
 
 /// The border winds about the foot of p if that is inside: it passes the half-line from there to the right,
 /// up or down, with the foot to its left or right.
-Real skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3l& p) {
-  Real edge = HUGE_VALL;
+template <class R>
+R skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3<R>& p) {
+  R edge = HUGE_VALL;
   int winding = 0;
+  const Vec3<R> right(body.axis[0]), up(body.axis[1]), normal(body.axis[2]);
   const std::size_t count = s.vertices.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3l a = Vec3l(s.vertices[i]), b = Vec3l(s.vertices[(i + 1) % count]);
+    const Vec3<R> a(s.vertices[i]), b(s.vertices[(i + 1) % count]);
     edge = std::min(edge, segment_square(a, b, p));
-    const Real ax = dot(a - p, body.axis[0]), ay = dot(a - p, body.axis[1]);
-    const Real bx = dot(b - p, body.axis[0]), by = dot(b - p, body.axis[1]);
-    const Real side = ax * by - ay * bx;
+    const R ax = dot(a - p, right), ay = dot(a - p, up), bx = dot(b - p, right), by = dot(b - p, up);
+    const R side = ax * by - ay * bx;
     if (ay <= 0 && by > 0 && side > 0) ++winding;
     if (by <= 0 && ay > 0 && side < 0) --winding;
   }
-  const Real height = dot(p - Vec3l(s.vertices[0]), body.axis[2]);
+  const R height = dot(p - Vec3<R>(s.vertices[0]), normal);
   return winding != 0 ? height * height : edge;
 }
 
-Real skeleton_square(const EllipsoidSkeleton& s, const Body& body, const Vec3l& p) {
-  const Vec3l q = p - Vec3l(s.center);
-  return square(
-      {dot(q, body.axis[0]) / s.radii.x, dot(q, body.axis[1]) / s.radii.y, dot(q, body.axis[2]) / s.radii.z});
+template <class R>
+Vec3<R> in_ellipsoid(const EllipsoidSkeleton& s, const Body& body, const Vec3<R>& q) {
+  return {dot(q, Vec3<R>(body.axis[0])) / s.radii.x, dot(q, Vec3<R>(body.axis[1])) / s.radii.y,
+          dot(q, Vec3<R>(body.axis[2])) / s.radii.z};
 }
 
-Real potential(const Potential& p, Real r2) {
-  const Real s2 = static_cast<Real>(p.scale) * p.scale, r = std::sqrt(r2), q2 = r2 / s2;
+template <class R>
+R skeleton_square(const EllipsoidSkeleton& s, const Body& body, const Vec3<R>& p) {
+  return square(in_ellipsoid(s, body, p - Vec3<R>(s.center)));
+}
+
+/// How much the root of such a square changes along `way` at most.
+double change_along(const EllipsoidSkeleton& s, const Body& body, const Vec3d& way) {
+  return length(in_ellipsoid(s, body, way));
+}
+template <class Skeleton>
+double change_along(const Skeleton&, const Body&, const Vec3d& way) {
+  return length(way);
+}
+
+/// It never rises with the distance.
+template <class R>
+R potential(const Potential& p, R r2) {
+  const R s2 = static_cast<R>(p.scale) * p.scale, r = std::sqrt(r2), q2 = r2 / s2;
   switch (p.kind) {
     case PotentialKind::inverse_square:
       return s2 / r2;
@@ -212,7 +241,7 @@ Real potential(const Potential& p, Real r2) {
       return std::exp(-p.scale * r2);
     case PotentialKind::quadratic:
       if (r > p.scale) return 0;
-      return r <= p.scale / Real{3} ? 1 - 3 * r2 / s2 : Real{1.5} * (1 - r / p.scale) * (1 - r / p.scale);
+      return r <= p.scale / R{3} ? 1 - 3 * r2 / s2 : R{1.5} * (1 - r / p.scale) * (1 - r / p.scale);
     case PotentialKind::rational:
       return q2 > 1 ? 0 : (q2 * q2 - 2 * q2 + 1) / (1 + p.d * q2);
     default:
@@ -229,25 +258,43 @@ struct Field {
   std::vector<Body> bodies;
 };
 
-/// The value of the blend that ends before `at`; moves `at` to where it begins.
-Real blend(const Field& field, std::size_t& at, const Vec3l& p) {
+/// An element's value at a point.
+Real value_of(const FieldElement& e, const Body& body, const Vec3l& p) {
+  const Real r2 = std::visit([&](const auto& s) { return skeleton_square(s, body, p); }, e.skeleton);
+  return e.potential.weight * potential(e.potential, r2);
+}
+
+struct Way {
+  Vec3d from, to;
+};
+/// Its values along a way.
+Enclosure value_of(const FieldElement& e, const Body& body, const Way& way) {
+  return std::visit(
+      [&](const auto& s) -> Enclosure {
+        const double away = std::sqrt(skeleton_square(s, body, (way.from + way.to) * 0.5)),
+                     room = change_along(s, body, (way.to - way.from) * 0.5) + kFieldRoom * (1 + away),
+                     least = std::max(away - room, 0.0), most = away + room;
+        const double hi = potential(e.potential, least * least), lo = potential(e.potential, most * most);
+        return e.potential.weight * Enclosure::between(lo, hi).with_room(kFieldRoom * (1 + std::abs(lo)));
+      },
+      e.skeleton);
+}
+
+/// The value of the blend that ends before `at`, at a point or along a way; moves `at` to where it begins.
+template <class T, class Place>
+T blend(const Field& field, std::size_t& at, const Place& place) {
+  using std::max, std::min;
   const BlobTreeShape& s = field.shape;
   const Blend& b = s.blends[--at];
-  if (b.op == Blend::Op::element) {
-    const FieldElement& e = s.elements[b.element];
-    const Real r2 = std::visit(
-        [&](const auto& skeleton) { return skeleton_square(skeleton, field.bodies[b.element], p); },
-        e.skeleton);
-    return e.potential.weight * potential(e.potential, r2);
-  }
-  std::vector<Real> v(b.count);
-  for (std::size_t k = b.count; k-- > 0;) v[k] = blend(field, at, p);
-  Real all = v[0];
+  if (b.op == Blend::Op::element) return value_of(s.elements[b.element], field.bodies[b.element], place);
+  std::vector<T> v(b.count);
+  for (std::size_t k = b.count; k-- > 0;) v[k] = blend<T>(field, at, place);
+  T all = v[0];
   for (std::size_t k = 1; k < v.size(); ++k)
     all = b.op == Blend::Op::sum   ? all + v[k]
-          : b.op == Blend::Op::max ? std::max(all, v[k])
-          : b.op == Blend::Op::min ? std::min(all, v[k])
-                                   : std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
+          : b.op == Blend::Op::max ? max(all, v[k])
+          : b.op == Blend::Op::min ? min(all, v[k])
+                                   : min(all, 2 * static_cast<T>(s.iso) - v[k]);
   return all;
 }
 
@@ -275,7 +322,12 @@ ExactOracle oracle_of(const BlobTreeShape& shape) {
   const auto data = std::make_shared<const Field>(shape);
   o.f = [data](const Vec3l& p) {
     std::size_t at = data->shape.blends.size();
-    return data->shape.iso - blend(*data, at, p);
+    return data->shape.iso - blend<Real>(*data, at, p);
+  };
+  o.clear = [data](const Vec3d& a, const Vec3d& b) {
+    std::size_t at = data->shape.blends.size();
+    const Enclosure f = data->shape.iso - blend<Enclosure>(*data, at, Way{a, b});
+    return f.positive() || f.negative();
   };
   return o;
 }

@@ -129,8 +129,8 @@ ExactOracle ifs(CaseRandom& random) {
 }
 
 /// A product by the table of units.
-std::array<Real, 4> times(JuliaShape::Algebra algebra, const std::array<Real, 4>& p,
-                          const std::array<Real, 4>& q) {
+template <bool kHypercomplex, class R>
+std::array<R, 4> times(const std::array<R, 4>& p, const std::array<R, 4>& q) {
   // Of i, j and k with each other: which unit, and its sign.
   struct Unit {
     std::size_t which;
@@ -140,13 +140,46 @@ std::array<Real, 4> times(JuliaShape::Algebra algebra, const std::array<Real, 4>
       {{0, -1}, {3, 1}, {2, -1}}, {{3, -1}, {0, -1}, {1, 1}}, {{2, 1}, {1, -1}, {0, -1}}};
   constexpr Unit kHyper[3][3] = {
       {{0, -1}, {3, 1}, {2, -1}}, {{3, 1}, {0, -1}, {1, -1}}, {{2, -1}, {1, -1}, {0, 1}}};
-  const auto& table = algebra == JuliaShape::Algebra::hypercomplex ? kHyper : kQuaternion;
-  std::array<Real, 4> sum{p[0] * q[0], 0, 0, 0};
+  std::array<R, 4> sum{p[0] * q[0], 0, 0, 0};
   for (std::size_t i = 1; i < 4; ++i) sum[i] = p[0] * q[i] + p[i] * q[0];
   for (std::size_t i = 1; i < 4; ++i)
-    for (std::size_t k = 1; k < 4; ++k)
-      sum[table[i - 1][k - 1].which] += static_cast<Real>(table[i - 1][k - 1].sign) * p[i] * q[k];
+    for (std::size_t k = 1; k < 4; ++k) {
+      const Unit unit = kHypercomplex ? kHyper[i - 1][k - 1] : kQuaternion[i - 1][k - 1];
+      sum[unit.which] += static_cast<R>(unit.sign) * p[i] * q[k];
+    }
   return sum;
+}
+
+/// What z becomes in one step.
+template <class R>
+std::array<R, 4> iterated(const JuliaShape& s, const std::array<R, 4>& z) {
+  std::array<R, 4> q = z;
+  for (std::uint32_t k = 1; k < s.power; ++k)
+    q = s.algebra == JuliaShape::Algebra::hypercomplex ? times<true>(q, z) : times<false>(q, z);
+  for (std::size_t k = 0; k < 4; ++k) q[k] += s.c[k];
+  return q;
+}
+
+/// Numbers of this size are not followed.
+constexpr double kBeyond = 1e15;
+
+/// Whether the last iterates of all numbers within `room` of z lie on one side of the sphere of radius r, by
+/// how far they are from that of z at most.
+bool stay_on_one_side(const JuliaShape& s, std::array<double, 4> z, double room, double r) {
+  const auto length_of = [&z] { return std::sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]); };
+  // A product is as long as its factors, of hypercomplex numbers up to the root of 2 times.
+  const double most = s.algebra == JuliaShape::Algebra::quaternion ? 1 : s.power == 2 ? std::sqrt(2.0) : 2;
+  for (std::uint32_t n = 0; n < s.iterations; ++n) {
+    const double size = length_of();
+    if (size - room > kBeyond) return true;
+    if (!(size + room < kBeyond)) return false;
+    // (z + e)^p - z^p, multiplied out, and what is rounded.
+    room =
+        most * (s.power == 2 ? room * (2 * size + room) : room * (3 * size * (size + room) + room * room)) +
+        1e-14 * (1 + size * size * (s.power == 2 ? 1 : size));
+    z = iterated(s, z);
+  }
+  return std::abs(length_of() - r) > room;
 }
 
 ExactOracle julia(CaseRandom& random) {
@@ -161,15 +194,16 @@ ExactOracle julia(CaseRandom& random) {
   for (const double c : s.c) size += static_cast<Real>(c) * c;
   const Real r = std::max((1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2, static_cast<Real>(s.escape));
   ExactOracle o{{s}, [s, r](const Vec3l& p) {
-                  Real a = p.x, b = p.y, c = p.z, d = s.slice;
-                  for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
-                    const std::array<Real, 4> z{a, b, c, d};
-                    std::array<Real, 4> q = z;
-                    for (std::uint32_t k = 1; k < s.power; ++k) q = times(s.algebra, q, z);
-                    a = q[0] + s.c[0], b = q[1] + s.c[1], c = q[2] + s.c[2], d = q[3] + s.c[3];
-                  }
-                  return a * a + b * b + c * c + d * d - r * r;
+                  constexpr Real kFar = static_cast<Real>(kBeyond) * kBeyond;
+                  std::array<Real, 4> z{p.x, p.y, p.z, s.slice};
+                  const auto square = [&z] { return z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]; };
+                  for (std::uint32_t n = 0; n < s.iterations && square() < kFar; ++n) z = iterated(s, z);
+                  return square() - r * r;
                 }};
+  o.clear = [s, r = static_cast<double>(r)](const Vec3d& a, const Vec3d& b) {
+    const Vec3d middle = (a + b) * 0.5;
+    return stay_on_one_side(s, {middle.x, middle.y, middle.z, s.slice}, 0.5 * length(b - a) + 1e-14, r);
+  };
   o.grow({0, 0, 0}, static_cast<double>(r));
   return o;
 }

@@ -1,5 +1,6 @@
 /// \file Functions of the user's own: surfaces known by name, written out by hand, and random expressions
-/// that are evaluated as they are drawn.
+/// that are evaluated as they are drawn. Most are written for numbers of any kind, so that they have
+/// enclosures.
 
 #include <fmt/format.h>
 
@@ -14,12 +15,23 @@ namespace oktett {
 
 namespace {
 
+using std::abs, std::cos, std::exp, std::log, std::max, std::min, std::pow, std::sin, std::sqrt;
+using EnclosingFunction = std::function<Enclosure(const Vec3<Enclosure>&)>;
+
 /// A text and what it means.
 struct Named {
   std::string text;
   SurfaceFunction f;
-  double size;  ///< half the side of the box
+  double size;                       ///< half the side of the box
+  EnclosingFunction enclosing = {};  ///< if set, of f over a box
 };
+
+/// One whose function takes numbers of any kind.
+template <class F>
+Named general(std::string text, double size, const F& f) {
+  return {std::move(text), [f](const Vec3l& p) -> Real { return f(p); }, size,
+          [f](const Vec3<Enclosure>& p) -> Enclosure { return f(p); }};
+}
 
 ExactOracle oracle(const Named& named, bool open) {
   const Vec3d hi{named.size, named.size, named.size};
@@ -31,6 +43,7 @@ ExactOracle oracle(const Named& named, bool open) {
                   const Real v = f(p);
                   return std::isnan(v) ? 1 : v;
                 }};
+  if (named.enclosing) o.clear = clear_by(named.enclosing);
   cut_by_box(o, s.lo, s.hi, open);
   return o;
 }
@@ -40,28 +53,29 @@ std::string text(double v) { return fmt::format("({:.17g})", v); }
 
 Real square(Real v) { return v * v; }
 
+template <class T>
+T diagonal(const T& v, const T& w) {
+  return sqrt(square(v) + square(w));
+}
+
 std::vector<Named> periodic(CaseRandom& random) {
   const double c = random.sign(), k = 1 + 6 * random.unit();
   return {
-      {"sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x) - " + text(0.5 * c),
-       [c](const Vec3l& p) {
-         return std::sin(p.x) * std::cos(p.y) + std::sin(p.y) * std::cos(p.z) +
-                std::sin(p.z) * std::cos(p.x) - 0.5L * c;
-       },
-       6},
-      {"cos(" + text(k) + "*x) + cos(" + text(k) + "*y) + cos(" + text(k) + "*z) - " + text(c),
-       [c, k](const Vec3l& p) { return std::cos(k * p.x) + std::cos(k * p.y) + std::cos(k * p.z) - c; }, 2},
-      {"y - 0.3*sin(" + text(k) + "*x)*cos(" + text(k) + "*z)",
-       [k](const Vec3l& p) { return p.y - 0.3L * std::sin(k * p.x) * std::cos(k * p.z); }, 1},
-      {"y - 0.3*cos(" + text(2 * k) + "*hypot(x, z))*exp(-(x^2+z^2))",
-       [k](const Vec3l& p) {
-         const Real q = p.x * p.x + p.z * p.z;
-         return p.y - 0.3L * std::cos(2 * k * std::sqrt(q)) * std::exp(-q);
-       },
-       1.5},
-      {"sin(x*y) + sin(y*z) + sin(z*x) - " + text(c),
-       [c](const Vec3l& p) { return std::sin(p.x * p.y) + std::sin(p.y * p.z) + std::sin(p.z * p.x) - c; },
-       3},
+      general("sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x) - " + text(0.5 * c), 6,
+              [c](const auto& p) {
+                return sin(p.x) * cos(p.y) + sin(p.y) * cos(p.z) + sin(p.z) * cos(p.x) - 0.5L * c;
+              }),
+      general("cos(" + text(k) + "*x) + cos(" + text(k) + "*y) + cos(" + text(k) + "*z) - " + text(c), 2,
+              [c, k](const auto& p) { return cos(k * p.x) + cos(k * p.y) + cos(k * p.z) - c; }),
+      general("y - 0.3*sin(" + text(k) + "*x)*cos(" + text(k) + "*z)", 1,
+              [k](const auto& p) { return p.y - 0.3L * sin(k * p.x) * cos(k * p.z); }),
+      general("y - 0.3*cos(" + text(2 * k) + "*hypot(x, z))*exp(-(x^2+z^2))", 1.5,
+              [k](const auto& p) {
+                const auto q = square(p.x) + square(p.z);
+                return p.y - 0.3L * cos(2 * k * sqrt(q)) * exp(-q);
+              }),
+      general("sin(x*y) + sin(y*z) + sin(z*x) - " + text(c), 3,
+              [c](const auto& p) { return sin(p.x * p.y) + sin(p.y * p.z) + sin(p.z * p.x) - c; }),
       // Twisted by the angle around the axis.
       {"sqrt((hypot(x, y) - 1)^2 + z^2) - 0.3 - 0.1*sin(3*atan2(y, x) + 2*atan2(z, hypot(x, y) - 1))",
        [](const Vec3l& p) {
@@ -76,45 +90,35 @@ std::vector<Named> periodic(CaseRandom& random) {
 std::vector<Named> algebraic(CaseRandom& random) {
   const double c = random.sign();
   return {
-      {"x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8 + " + text(c),
-       [c](const Vec3l& p) {
-         Real sum = 11.8L + c;
-         for (int k = 0; k < 3; ++k) sum += p[k] * p[k] * (p[k] * p[k] - 5);
-         return sum;
-       },
-       3},
-      {"(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
-       [](const Vec3l& p) {
-         const Real a = p.x * p.x + 2.25L * p.y * p.y + p.z * p.z - 1, b = p.z * p.z * p.z;
-         return a * a * a - p.x * p.x * b - 9.0L / 80 * p.y * p.y * b;
-       },
-       1.5},
-      {"((x^2+y^2-0.64)^2+(z^2-1)^2)*((y^2+z^2-0.64)^2+(x^2-1)^2)*((z^2+x^2-0.64)^2+(y^2-1)^2) - 0.02",
-       [](const Vec3l& p) {
-         const Real x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
-         return (square(x + y - 0.64L) + square(z - 1)) * (square(y + z - 0.64L) + square(x - 1)) *
-                    (square(z + x - 0.64L) + square(y - 1)) -
-                0.02L;
-       },
-       1.3},
+      general("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8 + " + text(c), 3,
+              [c](const auto& p) {
+                auto sum = 0 * p.x + (11.8L + c);
+                for (int k = 0; k < 3; ++k) sum += square(p[k]) * (square(p[k]) - 5);
+                return sum;
+              }),
+      general("(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3", 1.5,
+              [](const auto& p) {
+                const auto a = square(p.x) + 2.25L * square(p.y) + square(p.z) - 1, b = p.z * square(p.z);
+                return a * square(a) - square(p.x) * b - 9.0L / 80 * square(p.y) * b;
+              }),
+      general("((x^2+y^2-0.64)^2+(z^2-1)^2)*((y^2+z^2-0.64)^2+(x^2-1)^2)*((z^2+x^2-0.64)^2+(y^2-1)^2) - 0.02",
+              1.3,
+              [](const auto& p) {
+                const auto x = square(p.x), y = square(p.y), z = square(p.z);
+                return (square(x + y - 0.64L) + square(z - 1)) * (square(y + z - 0.64L) + square(x - 1)) *
+                           (square(z + x - 0.64L) + square(y - 1)) -
+                       0.02L;
+              }),
       // Klein's bottle.
-      {"(x^2+y^2+z^2+2*y-1)*((x^2+y^2+z^2-2*y-1)^2-8*z^2)+16*x*z*(x^2+y^2+z^2-2*y-1)",
-       [](const Vec3l& p) {
-         const Real r = dot(p, p), a = r - 2 * p.y - 1;
-         return (r + 2 * p.y - 1) * (square(a) - 8 * p.z * p.z) + 16 * p.x * p.z * a;
-       },
-       4},
-      {"sqrt((sqrt(x^2 + y^2) - 0.7)^2 + z^2) - 0.25",
-       [](const Vec3l& p) {
-         return std::sqrt(square(std::sqrt(p.x * p.x + p.y * p.y) - 0.7L) + p.z * p.z) - 0.25L;
-       },
-       1},
-      {"abs(x)^2.5 + abs(y)^2.5 + abs(z)^1.3 - 1",
-       [](const Vec3l& p) {
-         return std::pow(std::abs(p.x), 2.5L) + std::pow(std::abs(p.y), 2.5L) +
-                std::pow(std::abs(p.z), static_cast<Real>(1.3)) - 1;
-       },
-       1.1},
+      general("(x^2+y^2+z^2+2*y-1)*((x^2+y^2+z^2-2*y-1)^2-8*z^2)+16*x*z*(x^2+y^2+z^2-2*y-1)", 4,
+              [](const auto& p) {
+                const auto r = square(p.x) + square(p.y) + square(p.z), a = r - 2 * p.y - 1;
+                return (r + 2 * p.y - 1) * (square(a) - 8 * square(p.z)) + 16 * p.x * p.z * a;
+              }),
+      general("sqrt((sqrt(x^2 + y^2) - 0.7)^2 + z^2) - 0.25", 1,
+              [](const auto& p) { return diagonal(diagonal(p.x, p.y) - 0.7L, p.z) - 0.25L; }),
+      general("abs(x)^2.5 + abs(y)^2.5 + abs(z)^1.3 - 1", 1.1,
+              [](const auto& p) { return pow(abs(p.x), 2.5) + pow(abs(p.y), 2.5) + pow(abs(p.z), 1.3) - 1; }),
       {"x^2 + z^2/(1 + y^2) - 0.5*2^y/(1 + 3^(-y))",
        [](const Vec3l& p) {
          return p.x * p.x + p.z * p.z / (1 + p.y * p.y) -
@@ -126,34 +130,33 @@ std::vector<Named> algebraic(CaseRandom& random) {
 
 std::vector<Named> combined(CaseRandom& random) {
   const double c = random.sign();
-  const auto blob = [](Real x, Real y, Real z) { return std::exp(-3 * (x * x + y * y + z * z)); };
+  const auto blob = [](const auto& x, const auto& y, const auto& z) {
+    return exp(-3 * (square(x) + square(y) + square(z)));
+  };
   return {
-      {"0.5 - exp(-3*((x-0.5)^2+y^2+z^2)) - exp(-3*((x+0.5)^2+(y-" + text(c) + ")^2+z^2))",
-       [c, blob](const Vec3l& p) {
-         return 0.5L - blob(p.x - 0.5L, p.y, p.z) - blob(p.x + 0.5L, p.y - c, p.z);
-       },
-       2},
-      {"max(abs(x) - 0.8, abs(y) - 0.8, abs(z) - 0.8, 1 - sqrt(x^2 + y^2 + z^2))",
-       [](const Vec3l& p) {
-         return std::max({std::abs(p.x) - static_cast<Real>(0.8), std::abs(p.y) - static_cast<Real>(0.8),
-                          std::abs(p.z) - static_cast<Real>(0.8), 1 - std::sqrt(dot(p, p))});
-       },
-       1},
-      {"min(x^2 + y^2 + z^2 - 0.5, max(hypot(x, z) - 0.2, abs(y) - 0.9), hypot(y, z) - 0.15)",
-       [](const Vec3l& p) {
-         return std::min({dot(p, p) - 0.5L,
-                          std::max(std::sqrt(p.x * p.x + p.z * p.z) - 0.2L, std::abs(p.y) - 0.9L),
-                          std::sqrt(p.y * p.y + p.z * p.z) - 0.15L});
-       },
-       1},
-      {"-log(0.1 + 0.3/(0.05 + (x-0.4)^2 + y^2 + z^2) + 0.3/(0.05 + (x+0.4)^2 + y^2 + z^2)) + 0.5",
-       [](const Vec3l& p) {
-         const auto at = [&](Real d) {
-           return 0.3L / (0.05L + (p.x + d) * (p.x + d) + p.y * p.y + p.z * p.z);
-         };
-         return 0.5L - std::log(0.1L + at(-0.4L) + at(0.4L));
-       },
-       1.5},
+      general("0.5 - exp(-3*((x-0.5)^2+y^2+z^2)) - exp(-3*((x+0.5)^2+(y-" + text(c) + ")^2+z^2))", 2,
+              [c, blob](const auto& p) {
+                return 0.5L - blob(p.x - 0.5L, p.y, p.z) - blob(p.x + 0.5L, p.y - c, p.z);
+              }),
+      general("max(abs(x) - 0.8, abs(y) - 0.8, abs(z) - 0.8, 1 - sqrt(x^2 + y^2 + z^2))", 1,
+              [](const auto& p) {
+                return max(max(abs(p.x), max(abs(p.y), abs(p.z))) - static_cast<Real>(0.8),
+                           1 - diagonal(p.x, diagonal(p.y, p.z)));
+              }),
+      general("min(x^2 + y^2 + z^2 - 0.5, max(hypot(x, z) - 0.2, abs(y) - 0.9), hypot(y, z) - 0.15)", 1,
+              [](const auto& p) {
+                return min(min(square(p.x) + square(p.y) + square(p.z) - 0.5L,
+                               max(diagonal(p.x, p.z) - 0.2L, abs(p.y) - 0.9L)),
+                           diagonal(p.y, p.z) - 0.15L);
+              }),
+      general("-log(0.1 + 0.3/(0.05 + (x-0.4)^2 + y^2 + z^2) + 0.3/(0.05 + (x+0.4)^2 + y^2 + z^2)) + 0.5",
+              1.5,
+              [](const auto& p) {
+                const auto at = [&](Real d) {
+                  return 0.3L / (0.05L + square(p.x + d) + square(p.y) + square(p.z));
+                };
+                return 0.5L - log(0.1L + at(-0.4L) + at(0.4L));
+              }),
       {"atan(4*y) - asin(x/3) + acos(z/3) - 1.5 + 0.2*tan(x/2)",
        [](const Vec3l& p) {
          return std::atan(4 * p.y) - std::asin(p.x / 3) + std::acos(p.z / 3) - 1.5L +
@@ -171,12 +174,10 @@ std::vector<Named> combined(CaseRandom& random) {
                 0.1L * std::abs(exact_noise(5 * p.x, 5 * p.y, 5 * p.z));
        },
        1.5},
-      {"abs(abs(abs(x) - 0.5) - 0.2) + abs(y) + abs(abs(z) - 0.4) - 0.3",
-       [](const Vec3l& p) {
-         return std::abs(std::abs(std::abs(p.x) - 0.5L) - 0.2L) + std::abs(p.y) +
-                std::abs(std::abs(p.z) - 0.4L) - 0.3L;
-       },
-       1},
+      general("abs(abs(abs(x) - 0.5) - 0.2) + abs(y) + abs(abs(z) - 0.4) - 0.3", 1,
+              [](const auto& p) {
+                return abs(abs(abs(p.x) - 0.5L) - 0.2L) + abs(p.y) + abs(abs(p.z) - 0.4L) - 0.3L;
+              }),
   };
 }
 
@@ -202,42 +203,59 @@ std::vector<Named> torn(CaseRandom&) {
   };
 }
 
+/// What an expression is made of: functions of one or two numbers, of any kind.
+struct Unary {
+  template <class F>
+  constexpr Unary(const char* first, const char* last, F function)
+      : before(first), after(last), f(function), enclosing(function) {}
+  const char *before, *after;
+  Real (*f)(Real);
+  Enclosure (*enclosing)(Enclosure);
+};
+constexpr Unary kUnary[] = {{"sin(2*(", "))", [](auto v) { return sin(2 * v); }},
+                            {"cos(", ")", [](auto v) { return cos(v); }},
+                            {"exp(-(", ")^2)", [](auto v) { return exp(-square(v)); }},
+                            {"sqrt(1+(", ")^2)", [](auto v) { return sqrt(1 + square(v)); }},
+                            {"abs(", ")", [](auto v) { return abs(v); }},
+                            {"(", ")^3", [](auto v) { return v * square(v); }}};
+
+struct Binary {
+  template <class F>
+  constexpr Binary(const char* first, const char* middle, F function)
+      : before(first), between(middle), f(function), enclosing(function) {}
+  const char *before, *between;
+  Real (*f)(Real, Real);
+  Enclosure (*enclosing)(Enclosure, Enclosure);
+};
+constexpr Binary kBinary[] = {{"(", "-", [](auto v, auto w) { return v - w; }},
+                              {"(", "*", [](auto v, auto w) { return v * w; }},
+                              {"(", "*", [](auto v, auto w) { return v * w; }},
+                              {"max(", ",", [](auto v, auto w) { return max(v, w); }},
+                              {"min(", ",", [](auto v, auto w) { return min(v, w); }},
+                              {"(", "+", [](auto v, auto w) { return v + w; }}};
+
 /// A random expression, smooth or with kinks.
 Named draw(CaseRandom& random, int depth) {
   const auto pick = [&](int n) { return static_cast<int>(random.unit() * n); };
   if (depth == 0 || random.unit() < 0.1) {
     const int k = pick(4);
-    if (k < 3) return {std::string(1, "xyz"[k]), [k](const Vec3l& p) { return p[k]; }, 1};
+    if (k < 3) return general(std::string(1, "xyz"[k]), 1, [k](const auto& p) { return p[k]; });
     const double c = 2 * random.sign();
-    return {text(c), [c](const Vec3l&) { return static_cast<Real>(c); }, 1};
+    return general(text(c), 1, [c](const auto&) { return c; });
   }
   const Named a = draw(random, depth - 1);
   if (random.unit() < 0.4) {
-    static constexpr struct {
-      const char *before, *after;
-      Real (*f)(Real);
-    } kUnary[] = {{"sin(2*(", "))", [](Real v) { return std::sin(2 * v); }},
-                  {"cos(", ")", [](Real v) { return std::cos(v); }},
-                  {"exp(-(", ")^2)", [](Real v) { return std::exp(-v * v); }},
-                  {"sqrt(1+(", ")^2)", [](Real v) { return std::sqrt(1 + v * v); }},
-                  {"abs(", ")", [](Real v) { return std::abs(v); }},
-                  {"(", ")^3", [](Real v) { return v * v * v; }}};
-    const auto& [before, after, f] = kUnary[pick(6)];
-    return {before + a.text + after, [of = f, g = a.f](const Vec3l& p) { return of(g(p)); }, 1};
+    const Unary& of = kUnary[pick(6)];
+    return {of.before + a.text + of.after, [f = of.f, g = a.f](const Vec3l& p) { return f(g(p)); }, 1,
+            [f = of.enclosing, g = a.enclosing](const Vec3<Enclosure>& p) { return f(g(p)); }};
   }
   const Named b = draw(random, depth - 1);
-  static constexpr struct {
-    const char *before, *between;
-    Real (*f)(Real, Real);
-  } kBinary[] = {{"(", "-", [](Real v, Real w) { return v - w; }},
-                 {"(", "*", [](Real v, Real w) { return v * w; }},
-                 {"(", "*", [](Real v, Real w) { return v * w; }},
-                 {"max(", ",", [](Real v, Real w) { return std::max(v, w); }},
-                 {"min(", ",", [](Real v, Real w) { return std::min(v, w); }},
-                 {"(", "+", [](Real v, Real w) { return v + w; }}};
-  const auto& [before, between, f] = kBinary[pick(6)];
-  return {before + a.text + between + b.text + ")",
-          [of = f, g = a.f, h = b.f](const Vec3l& p) { return of(g(p), h(p)); }, 1};
+  const Binary& of = kBinary[pick(6)];
+  return {of.before + a.text + of.between + b.text + ")",
+          [f = of.f, g = a.f, h = b.f](const Vec3l& p) { return f(g(p), h(p)); }, 1,
+          [f = of.enclosing, g = a.enclosing, h = b.enclosing](const Vec3<Enclosure>& p) {
+            return f(g(p), h(p));
+          }};
 }
 
 template <std::vector<Named> (*kAll)(CaseRandom&)>
@@ -252,7 +270,10 @@ ExactOracle draw_random(CaseRandom& random) {
   const Named e = draw(random, 3);
   const double size = 1 + random.unit();
   return oracle({"x^2 + y^2 + z^2 - 1 + 0.5*(" + e.text + ")",
-                 [f = e.f](const Vec3l& p) { return dot(p, p) - 1 + 0.5L * f(p); }, size},
+                 [f = e.f](const Vec3l& p) { return dot(p, p) - 1 + 0.5L * f(p); }, size,
+                 [f = e.enclosing](const Vec3<Enclosure>& p) {
+                   return square(p.x) + square(p.y) + square(p.z) - 1 + 0.5L * f(p);
+                 }},
                 random.unit() < 0.4);
 }
 

@@ -14,11 +14,16 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A function of u and v as a text and in C++.
+/// A function of u and v as a text and in C++, and an enclosure of it over a rectangle.
 struct Ripple {
   std::string text;
   std::function<Real(Real, Real)> at;
+  std::function<Enclosure(Enclosure, Enclosure)> over;
 };
+template <class F>
+Ripple ripple(std::string text, const F& f) {
+  return {std::move(text), f, f};
+}
 
 UvFunction compiled(const std::string& text) { return {compile_function(text, kSurfaceVariables)}; }
 
@@ -35,19 +40,20 @@ double short_number(double x) { return std::round(x * 4096) / 4096; }
 Ripple draw_ripple(CaseRandom& random, double high) {
   const double a = short_number(high * random.sign()), m = std::round(1 + 4 * random.unit()),
                n = std::round(1 + 4 * random.unit()), p = short_number(random.sign());
+  using std::abs, std::cos, std::exp, std::sin, std::sqrt;
   switch (random.bits() % 4) {
     case 0:
-      return {fmt::format("{}*sin({}*u + {})*cos({}*v)", a, m, p, n),
-              [=](Real u, Real v) { return a * std::sin(m * u + p) * std::cos(n * v); }};
+      return ripple(fmt::format("{}*sin({}*u + {})*cos({}*v)", a, m, p, n),
+                    [=](auto u, auto v) { return a * sin(m * u + p) * cos(n * v); });
     case 1:
-      return {fmt::format("{}*exp(-(u - {})^2 - v^2)", a, p),
-              [=](Real u, Real v) { return a * std::exp(-(u - p) * (u - p) - v * v); }};
+      return ripple(fmt::format("{}*exp(-(u - {})^2 - v^2)", a, p),
+                    [=](auto u, auto v) { return a * exp(-(u - p) * (u - p) - v * v); });
     case 2:
-      return {fmt::format("{}*(u^2 - v^2*u + {}*v)", a, p),
-              [=](Real u, Real v) { return a * (u * u - v * v * u + p * v); }};
+      return ripple(fmt::format("{}*(u^2 - v^2*u + {}*v)", a, p),
+                    [=](auto u, auto v) { return a * (u * u - v * v * u + p * v); });
     default:
-      return {fmt::format("{}*abs(u - {}) + {}*sqrt(1 + v^2)", a, p, a),
-              [=](Real u, Real v) { return a * std::abs(u - p) + a * std::sqrt(1 + v * v); }};
+      return ripple(fmt::format("{}*abs(u - {}) + {}*sqrt(1 + v^2)", a, p, a),
+                    [=](auto u, auto v) { return a * abs(u - p) + a * sqrt(1 + v * v); });
   }
 }
 
@@ -72,6 +78,13 @@ ExactOracle graph(CaseRandom& random) {
     const Real beyond = std::max({s.from[0] - p.x, p.x - s.to[0], s.from[1] - p.y, p.y - s.to[1]});
     return s.cut ? std::max(beyond, outside(s.lo, s.hi, p)) : beyond;
   };
+  o.clear = [s, h](const Vec3d& a, const Vec3d& b) {
+    const Vec3<Enclosure> way = box_about(a, b);
+    for (int k = 0; k < 2; ++k)
+      if (way[k].hi < s.from[k] || way[k].lo > s.to[k]) return true;
+    const Enclosure above = way.z - h.over(way.x, way.y);
+    return above.positive() || above.negative();
+  };
   return o;
 }
 
@@ -92,6 +105,12 @@ ExactOracle bumpy_ball(CaseRandom& random, bool open) {
   };
   ExactOracle o{{s}, f};
   o.grow({0, 0, 0}, 1.5);
+  // The radius changes with v by 3 a + 3 |b| at most, and with u by a n cos(v), where circles are as short.
+  o.clear = [f, steepest = (3 + n) * a + 3 * std::abs(b)](const Vec3d& from, const Vec3d& to) {
+    const Vec3l middle = (Vec3l(from) + Vec3l(to)) * 0.5L;
+    const Real room = 0.5L * length(to - from) + 1e-14L, nearest = std::sqrt(dot(middle, middle)) - room;
+    return nearest > 0 && std::abs(f(middle)) > room * (1 + steepest / nearest);
+  };
   if (open)
     o.where = [s](const Vec3l& p) -> Real {
       Real u = std::atan2(p.y, p.x);
@@ -118,7 +137,15 @@ ExactOracle thick_ring(CaseRandom& random) {
     return std::sqrt(across * across + p.z * p.z) - (minor + wave * std::sin(n * std::atan2(p.y, p.x)));
   };
   const double out = major + 1.6 * minor;
-  return {{s}, f, {-out, -out, -1.6 * minor}, {out, out, 1.6 * minor}};
+  ExactOracle o{{s}, f, {-out, -out, -1.6 * minor}, {out, out, 1.6 * minor}};
+  // Around the axis the tube's radius changes by n times the wave at most.
+  o.clear = [f, steepest = n * std::abs(wave)](const Vec3d& from, const Vec3d& to) {
+    const Vec3l middle = (Vec3l(from) + Vec3l(to)) * 0.5L;
+    const Real room = 0.5L * length(to - from) + 1e-14L,
+               nearest = std::sqrt(middle.x * middle.x + middle.y * middle.y) - room;
+    return nearest > 0 && std::abs(f(middle)) > room * (1 + steepest / nearest);
+  };
+  return o;
 }
 
 }  // namespace

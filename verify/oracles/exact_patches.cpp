@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -62,6 +63,83 @@ bool look_along(const PowerPatch<R>& patch, const Vec3<R>& way, R& u, R& v, R& d
   const R off = std::max(std::abs(dot(a, p)), std::abs(dot(b, p)));
   return distance > 0 && off < R(1e-12);
 }
+
+/// Slices of balls that hold the parts of patches, in balls about whole patches.
+class PatchSlices {
+ public:
+  explicit PatchSlices(const std::vector<BezierPatchPoints>& patches) {
+    for (const BezierPatchPoints& patch : patches) {
+      Group group{slice_about(patch), {}};
+      for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i)
+          group.parts[j * kSide + i] = slice_about(turned(part(turned(part(patch, i)), j)));
+      groups_.push_back(group);
+    }
+  }
+  /// Whether part of a patch may be within `room` of p.
+  bool near(const Vec3d& p, double room) const {
+    const auto is_near = [&](const Slice& slice) {
+      const Vec3d d = p - slice.center;
+      return dot(d, d) <= (slice.radius + room) * (slice.radius + room) &&
+             std::abs(dot(d, slice.normal)) <= slice.thick + room;
+    };
+    for (const Group& group : groups_)
+      if (is_near(group.all) && std::any_of(std::begin(group.parts), std::end(group.parts), is_near))
+        return true;
+    return false;
+  }
+
+ private:
+  static constexpr int kSide = 16;
+  /// What of a ball is no farther than `thick` from the plane through its middle.
+  struct Slice {
+    Vec3d center, normal;
+    double radius = 0, thick = 0;
+  };
+  struct Group {
+    Slice all, parts[kSide * kSide];
+  };
+
+  /// A patch lies between its control points.
+  static Slice slice_about(const BezierPatchPoints& patch) {
+    Slice slice;
+    for (const Vec3d& p : patch.p) slice.center += p * (1.0 / 16);
+    const Vec3d n = cross(patch.p[15] - patch.p[0], patch.p[12] - patch.p[3]);
+    if (dot(n, n) > 0) slice.normal = normalize(n);
+    for (const Vec3d& p : patch.p) {
+      slice.radius = std::max(slice.radius, length(p - slice.center));
+      slice.thick = std::max(slice.thick, std::abs(dot(p - slice.center, slice.normal)));
+    }
+    const double rounding = 1e-9 * (1 + slice.radius);
+    slice.radius += rounding, slice.thick += rounding;
+    return slice;
+  }
+  static BezierPatchPoints turned(const BezierPatchPoints& patch) {
+    BezierPatchPoints other;
+    for (int k = 0; k < 16; ++k) other.p[k] = patch.p[k % 4 * 4 + k / 4];
+    return other;
+  }
+  /// Strip number i along u: its control points are values of the blossom, k times at `to` and else at
+  /// `from`.
+  static BezierPatchPoints part(const BezierPatchPoints& patch, int i) {
+    const double from = double(i) / kSide, to = double(i + 1) / kSide;
+    BezierPatchPoints strip;
+    for (int row = 0; row < 4; ++row)
+      for (int k = 0; k < 4; ++k) {
+        Vec3d q[4];
+        for (int n = 0; n < 4; ++n) q[n] = patch.p[4 * row + n];
+        for (int n = 3; n > 0; --n)
+          for (int m = 0; m < n; ++m) {
+            const double u = n <= k ? to : from;
+            q[m] = q[m] * (1 - u) + q[m + 1] * u;
+          }
+        strip.p[4 * row + k] = q[0];
+      }
+    return strip;
+  }
+
+  std::vector<Group> groups_;
+};
 
 /// A body all of whose surface is seen from the origin.
 class Star {
@@ -226,6 +304,9 @@ ExactOracle star_oracle(std::vector<BezierPatchPoints> patches, const std::share
   };
   s.patches = std::move(patches);
   ExactOracle o{{s}, f};
+  o.clear = [slices = PatchSlices(s.patches)](const Vec3d& a, const Vec3d& b) {
+    return !slices.near((a + b) * 0.5, length(b - a) * 0.5);
+  };
   for (const BezierPatchPoints& patch : s.patches)
     for (const Vec3d& p : patch.p) o.grow(p, 0.01);
   return o;
@@ -288,6 +369,21 @@ ExactOracle patch_heights(CaseRandom& random) {
   for (const BezierPatchPoints& patch : s.patches)
     for (const Vec3d& p : patch.p) o.grow(p, 0.01);
   o.where = [=](const Vec3l& p) { return std::max({-p.x, -p.y, p.x - columns, p.y - rows}); };
+  // Over the patches the height changes no faster than between neighbouring control points, also past edges.
+  double by_x = 0, by_y = 0;
+  for (const BezierPatchPoints& patch : s.patches)
+    for (int k = 0; k < 16; ++k) {
+      if (k % 4 > 0) by_x = std::max(by_x, 3 * std::abs(patch.p[k].z - patch.p[k - 1].z));
+      if (k / 4 > 0) by_y = std::max(by_y, 3 * std::abs(patch.p[k].z - patch.p[k - 4].z));
+    }
+  o.clear = [=](const Vec3d& a, const Vec3d& b) {
+    const Vec3<Enclosure> way = box_about(a, b);
+    if (way.x.hi < 0 || way.x.lo > columns || way.y.hi < 0 || way.y.lo > rows) return true;
+    const Vec3d middle = (a + b) * 0.5, half = abs(b - a) * 0.5;
+    const Vec3l foot{std::clamp(middle.x, 0.0, double(columns)), std::clamp(middle.y, 0.0, double(rows)),
+                     middle.z};
+    return std::abs(f(foot)) > (half.z + by_x * half.x + by_y * half.y) * (1 + 1e-12L) + 1e-12L;
+  };
   return o;
 }
 

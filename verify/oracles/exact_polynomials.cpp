@@ -6,6 +6,7 @@
 
 #include "kernels/exact/lathe.h"
 #include "kernels/exact/polynomial_expression.h"
+#include "verify/oracles/curve_boxes.h"
 #include "verify/oracles/exact_families.h"
 
 namespace oktett {
@@ -138,28 +139,36 @@ ExactOracle blob(CaseRandom& random) {
   return o;
 }
 
+/// How far the points between two are from the axis y.
+Enclosure distance_from_axis(const Vec3d& a, const Vec3d& b) {
+  const double away = std::hypot((a.x + b.x) / 2, (a.z + b.z) / 2),
+               room = std::hypot((b.x - a.x) / 2, (b.z - a.z) / 2);
+  return max(Enclosure::between(away - room, away + room).with_room(1e-14 * (away + room)), 0);
+}
+
 /// How far outside of piece k of a profile: of its slab of height, or of its radius at that height by
 /// Bezier's form, with i = y and j = 1 - y (Melcher), or straight, or for `sor` the square root of a cubic.
-Real outside_piece(const RevolutionShape& s, std::size_t k, Real rho, Real height, bool slab) {
+/// Numbers are `Real` or enclosures.
+template <class T>
+T outside_piece(const RevolutionShape& s, std::size_t k, T rho, T height, bool slab) {
+  using std::max, std::min, std::sqrt;
   const ProfilePoint &p = s.points[k], &q = s.points[k + 1];
-  const Real h = static_cast<Real>(q.height) - p.height;
-  if (!(h > 0)) return HUGE_VALL;
-  const Real ends = slab ? std::max(p.height - height, height - q.height) : -HUGE_VALL;
-  const Real i = std::clamp((height - p.height) / h, 0.0L, 1.0L), j = 1 - i;
-  if (s.profile == RevolutionShape::Profile::linear)
-    return std::max(ends, rho - (q.radius * i + p.radius * j));
+  const T h = T(q.height) - p.height, zero = 0, one = 1;
+  if (!(p.height < q.height)) return HUGE_VALL;
+  const T ends = slab ? max(p.height - height, height - q.height) : T(-HUGE_VALL);
+  const T i = min(max((height - p.height) / h, zero), one), j = 1 - i;
+  if (s.profile == RevolutionShape::Profile::linear) return max(ends, rho - (q.radius * i + p.radius * j));
   const auto slope = [&](std::size_t at) {
     const ProfilePoint &a = s.points[at - 1], &b = s.points[at + 1];
-    return (static_cast<Real>(b.radius) - a.radius) / (static_cast<Real>(b.height) - a.height);
+    return (T(b.radius) - a.radius) / (T(b.height) - a.height);
   };
-  const Real m = slope(k) * h / 3, n = slope(k + 1) * h / 3, r = p.radius, t = q.radius;
+  const T m = slope(k) * h / 3, n = slope(k + 1) * h / 3, r = p.radius, t = q.radius;
   if (s.profile == RevolutionShape::Profile::sor) {
-    const Real square = t * t * i * i * i + 3 * (t * t - 2 * t * n) * i * i * j +
-                        3 * (r * r + 2 * r * m) * i * j * j + r * r * j * j * j;
-    return std::max(ends, rho - std::sqrt(std::max(square, 0.0L)));
+    const T square = t * t * i * i * i + 3 * (t * t - 2 * t * n) * i * i * j +
+                     3 * (r * r + 2 * r * m) * i * j * j + r * r * j * j * j;
+    return max(ends, rho - sqrt(max(square, zero)));
   }
-  return std::max(ends,
-                  rho - (t * i * i * i + 3 * (t - n) * i * i * j + 3 * (r + m) * i * j * j + r * j * j * j));
+  return max(ends, rho - (t * i * i * i + 3 * (t - n) * i * i * j + 3 * (r + m) * i * j * j + r * j * j * j));
 }
 
 using Profile = RevolutionShape::Profile;
@@ -221,6 +230,17 @@ void for_places(const Real (&p)[4], Real at, F&& f) {
     f(u);
   }
 }
+
+/// Such a coordinate for the boxes of curves.
+struct BezierNumber {
+  const double (&p)[4];
+
+  double at(double u) const { return bezier(p, u); }
+  double slope(double u) const {
+    const double w = 1 - u;
+    return 3 * ((p[1] - p[0]) * w * w + 2 * (p[2] - p[1]) * w * u + (p[3] - p[2]) * u * u);
+  }
+};
 
 template <class Real>
 struct ProfileCurve {
@@ -316,6 +336,15 @@ ExactOracle lathe(CaseRandom& random) {
       return view.wall - view.disk;
     };
   }
+  CurveBoxes curves;
+  for (const ProfileCurve<double>& c : rough) curves.add(BezierNumber{c.r}, BezierNumber{c.y});
+  // Where neither the curve nor a disk is, the number of crossings stays the same.
+  o.clear = [curves, ends, loop](const Vec3d& a, const Vec3d& b) {
+    const Enclosure y = box_about(a, b).y, rho = distance_from_axis(a, b);
+    for (const ProfilePoint& end : ends)
+      if (!loop && rho.lo <= end.radius && y.lo <= end.height && y.hi >= end.height) return false;
+    return !curves.meet(rho, y);
+  };
   for (const ProfilePoint& p : s.points)
     o.lo = min(o.lo, Vec3d{-p.radius, p.height, -p.radius}),
     o.hi = max(o.hi, Vec3d{p.radius, p.height, p.radius});
@@ -350,6 +379,20 @@ ExactOracle oracle_of(const RevolutionShape& s) {
     return d;
   };
   ExactOracle o{{s}, solid, {-1.2, lo, -1.2}, {1.2, hi, 1.2}};
+  o.clear = [=](const Vec3d& a, const Vec3d& b) {
+    const Enclosure height = box_about(a, b).y;
+    if (height.hi < lo || height.lo > hi) return true;
+    if (s.open && (height.lo <= lo || height.hi >= hi)) return false;
+    const Enclosure rho = distance_from_axis(a, b);
+    bool outside = true;
+    for (std::size_t k = first; k < last; ++k) {
+      if (height.hi < s.points[k].height || height.lo > s.points[k + 1].height) continue;
+      const Enclosure one = outside_piece(s, k, rho, height, true);
+      if (one.negative()) return true;
+      outside &= one.positive();
+    }
+    return outside;
+  };
   if (s.open) o.where = [lo, hi](const Vec3l& p) { return std::max(lo - p.y, p.y - hi); };
   return o;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernels/exact/prism.h"
+#include "verify/oracles/curve_boxes.h"
 #include "verify/oracles/exact_families.h"
 
 namespace oktett {
@@ -163,6 +164,9 @@ PlaneOutline round_outline(CaseRandom& random, const FlatPoint& middle, double s
   return p;
 }
 
+/// How near to the tip rounding moves a point too much as seen from there.
+constexpr double kTip = 1e-4;
+
 /// The points with which a curve of a kind goes around and meets its beginning, or is closed by a line.
 PlaneOutline around(CaseRandom& random, PlaneOutline p, PrismCurve curve) {
   if (curve == PrismCurve::linear) {
@@ -244,6 +248,19 @@ ExactOracle oracle_of(const PrismShape& s) {
   } else {
     o.f = [side, slab](const Vec3l& p) { return std::max(side(p), slab(p)); };
   }
+  CurveBoxes curves;
+  for (const OutlineTruth<double>& piece : rough) curves.add(piece.x, piece.z);
+  // Where no curve is, the number of crossings stays the same. Seen from the tip a way is straight, too.
+  o.clear = [curves, conic, from, to, side, open = s.open](const Vec3d& a, const Vec3d& b) {
+    const Enclosure y = box_about(a, b).y;
+    if (y.hi < from || y.lo > to) return true;
+    if (conic && !(y.lo > kTip || y.hi < -kTip)) return false;
+    const double ya = conic ? a.y : 1, yb = conic ? b.y : 1;
+    if (curves.meet(Enclosure::between(a.x / ya, b.x / yb), Enclosure::between(a.z / ya, b.z / yb)))
+      return false;
+    // A flat end is none where the sides are not about it.
+    return open || (y.lo > from && y.hi < to) || side(Vec3l(a)) > 0;
+  };
   const double most = std::max(std::abs(from), std::abs(to));
   double x0 = HUGE_VAL, x1 = -HUGE_VAL, z0 = HUGE_VAL, z1 = -HUGE_VAL;
   for (const OutlineTruth<double>& piece : rough) {

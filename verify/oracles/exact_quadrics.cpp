@@ -166,6 +166,8 @@ std::vector<ExactCase> quadric_cases() {
 
 namespace {
 
+using std::abs, std::max;
+
 using Form = SuperquadricShape::Form;
 
 /// |x|^p or g_p(|x|).
@@ -177,22 +179,40 @@ Real power(Real x, double p, bool ratio) {
   return below > 0 ? x / below : HUGE_VALL;
 }
 
+/// Both rise.
+Enclosure power(const Enclosure& x, double p, bool ratio) {
+  return Enclosure::of_rising(abs(x), 0, [&](double at) { return power(at, p, ratio); });
+}
+
+template <class Real>
+bool is_infinite(Real x) {
+  return std::isinf(x);
+}
+bool is_infinite(const Enclosure& x) { return std::isinf(x.lo); }
+
+/// The value, or infinity where it is none.
+template <class Real>
+Real finite(Real f) {
+  return std::isfinite(f) ? f : HUGE_VALL;
+}
+Enclosure finite(const Enclosure& f) { return f; }
+
 template <class Real>
 Real equation(const SuperquadricShape& s, const Vec3<Real>& p) {
-  const Real x = p.x / s.radii.x, y = p.y / s.radii.y, z = p.z / s.radii.z;
-  Real f;
-  if (s.form == Form::toroid) {
-    const Real w = power(power(x, s.m, s.ratio) + power(y, s.n, s.ratio), s.q, s.ratio);
-    f = power(static_cast<Real>(s.d) - w, s.r, s.ratio) + power(z, s.p, s.ratio) -
-        static_cast<Real>(s.e) * s.e;
-  } else {
-    const Real zr = power(z, s.r, s.ratio), xy = power(x, s.p, s.ratio) + power(y, s.q, s.ratio);
-    f = s.form == Form::ellipsoid ? xy + zr - 1 : xy - zr - 1;
-    // Beyond a pole nothing is inside.
-    if (s.form == Form::hyperboloid && s.ratio && s.r > 1)
-      f = std::max(f, std::abs(z) - static_cast<Real>(s.r) / (s.r - 1));
+  const bool toroid = s.form == Form::toroid;
+  const Real z = p.z / s.radii.z, px = power(p.x / s.radii.x, toroid ? s.m : s.p, s.ratio),
+             py = power(p.y / s.radii.y, toroid ? s.n : s.q, s.ratio),
+             pz = power(z, toroid ? s.p : s.r, s.ratio);
+  if (is_infinite(px) || is_infinite(py) || is_infinite(pz)) return HUGE_VALL;
+  if (toroid) {
+    const Real w = power(px + py, s.q, s.ratio), e = s.e;
+    return finite(power(s.d - w, s.r, s.ratio) + pz - e * e);
   }
-  return std::isfinite(f) ? f : HUGE_VALL;
+  Real f = s.form == Form::ellipsoid ? px + py + pz - 1 : px + py - pz - 1;
+  // Beyond a pole nothing is inside.
+  if (s.form == Form::hyperboloid && s.ratio && s.r > 1)
+    f = max(f, abs(z) - static_cast<Real>(s.r) / (s.r - 1));
+  return finite(f);
 }
 
 /// In `long double` where `double` might not tell the sign: the steepest power, of exponent 0.3, makes 1e-17
@@ -233,6 +253,7 @@ ExactOracle draw(CaseRandom& random) {
 ExactOracle oracle_of(const SuperquadricShape& s) {
   const Vec3d reach = s.form == Form::toroid ? Superquadric::reach(s) : s.radii;
   ExactOracle oracle{{s}, [s](const Vec3l& p) { return equation_value(s, p); }, -reach, reach};
+  oracle.clear = clear_by([s](const Vec3<Enclosure>& p) { return equation(s, p); });
   if (s.form == Form::hyperboloid) cut_by_box(oracle, s.lo, s.hi, false);
   return oracle;
 }

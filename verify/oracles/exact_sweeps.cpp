@@ -57,6 +57,12 @@ struct SweptPiece {
     const R dx = x.at(s) - q.x, dy = y.at(s) - q.y, dz = z.at(s) - q.z;
     return std::sqrt(dx * dx + dy * dy + dz * dz) - std::abs(r.at(s));
   }
+  /// How fast that changes with s where the radius is positive.
+  R away_slope(const Vec3<R>& q, R s) const {
+    const R dx = x.at(s) - q.x, dy = y.at(s) - q.y, dz = z.at(s) - q.z;
+    return (dx * x.slope(s) + dy * y.slope(s) + dz * z.slope(s)) / std::sqrt(dx * dx + dy * dy + dz * dz) -
+           r.slope(s);
+  }
   /// A step of Newton's method towards where the squared distance less the squared radius turns.
   R turned(const Vec3<R>& q, R s) const {
     R slope = 0, bend = 0;
@@ -85,12 +91,64 @@ struct SweptPiece {
 struct Sweep {
   std::vector<SweptPiece<double>> rough;
   std::vector<SweptPiece<Real>> exact;
-  std::vector<double> speed;  ///< no distance changes faster with s
+  std::vector<double> speed;        ///< no distance changes faster with s
+  std::vector<double> bend;         ///< its slope falls no faster; infinite if a radius is not positive
+  std::vector<SweptSphere> around;  ///< a ball about the whole piece
+
+  void add(const SphereSweepShape& s, std::size_t first) {
+    const auto piece = SweptPiece<double>::of(s, first);
+    rough.push_back(piece), exact.push_back(SweptPiece<Real>::of(s, first));
+    constexpr int kParts = 64;
+    SweptSphere ball{{piece.x.at(0.5), piece.y.at(0.5), piece.z.at(0.5)}, 0};
+    double fastest = 0, widening = 0, thinnest = HUGE_VAL;
+    for (int k = 0; k <= kParts; ++k) {
+      const double v = double(k) / kParts, x = piece.x.slope(v), y = piece.y.slope(v), z = piece.z.slope(v);
+      fastest = std::max(fastest, std::sqrt(x * x + y * y + z * z) + std::abs(piece.r.slope(v)));
+      widening = std::max(widening, std::abs(piece.r.slope(v)));
+      thinnest = std::min(thinnest, piece.r.at(v));
+      const Vec3d center{piece.x.at(v), piece.y.at(v), piece.z.at(v)};
+      ball.radius = std::max(ball.radius, length(center - ball.center) + std::abs(piece.r.at(v)));
+    }
+    speed.push_back(1.1 * fastest + 1e-9);
+    ball.radius += speed.back() / kParts;
+    around.push_back(ball);
+    const auto bend_at = [&](double v) {
+      return length(Vec3d{piece.x.bend(v), piece.y.bend(v), piece.z.bend(v)}) + std::abs(piece.r.bend(v));
+    };
+    bend.push_back(thinnest > widening / kParts ? std::max(bend_at(0), bend_at(1)) : HUGE_VAL);
+  }
+
+  /// Whether the distance is surely above `room`, surely below -`room`, or neither.
+  enum class Side { outside, inside, unclear };
+  Side side_of(const Vec3d& q, double room) const {
+    Side all = Side::outside;
+    for (std::size_t k = 0; k < rough.size(); ++k) {
+      if (length(q - around[k].center) - around[k].radius > room) continue;
+      const Side side = side_of(k, q, room, 0.5, 0.5, 8);
+      if (side == Side::inside) return side;
+      if (side == Side::unclear) all = side;
+    }
+    return all;
+  }
+  /// That of the part of piece k up to `half` before and after `s`, by halving it up to so many times.
+  Side side_of(std::size_t k, const Vec3d& q, double room, double s, double half, int times) const {
+    const double away = rough[k].away(q, s);
+    if (away < -room) return Side::inside;
+    const double fall =
+        std::min(speed[k] * half, std::abs(rough[k].away_slope(q, s)) * half + bend[k] * half * half / 2);
+    if (away - fall > room) return Side::outside;
+    if (times == 0) return Side::unclear;
+    const Side before = side_of(k, q, room, s - half / 2, half / 2, times - 1);
+    if (before == Side::inside) return before;
+    const Side after = side_of(k, q, room, s + half / 2, half / 2, times - 1);
+    return after == Side::outside ? before : after;
+  }
 
   Real distance(const Vec3l& p) const {
     const Vec3<double> q{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
     Real best = HUGE_VALL;
     for (std::size_t k = 0; k < rough.size(); ++k) {
+      if (length(q - around[k].center) - around[k].radius > best) continue;
       constexpr int kSteps = 24;
       double d[kSteps + 1];
       double least = HUGE_VAL;
@@ -100,7 +158,7 @@ struct Sweep {
         best = std::min<Real>(best, d[i]);
         if ((i > 0 && d[i - 1] < d[i]) || (i < kSteps && d[i + 1] < d[i])) continue;
         const double a = std::max(i - 1, 0) / double{kSteps}, b = std::min(i + 1, kSteps) / double{kSteps};
-        const double s = rough[k].least_between(q, a, b, 40);
+        const double s = rough[k].least_between(q, a, b, 24);
         const double about = rough[k].away(q, s);
         best = std::min<Real>(best, about);
         // In `Real` where `double` might not tell the sign.
@@ -142,17 +200,17 @@ ExactOracle oracle_of(const SphereSweepShape& s) {
   const std::size_t width = s.curve == SweepCurve::linear ? 2 : 4;
   ExactOracle o{{s}, {}};
   for (std::size_t i = 0; i + width <= s.spheres.size(); ++i) {
-    sweep.rough.push_back(SweptPiece<double>::of(s, i));
-    sweep.exact.push_back(SweptPiece<Real>::of(s, i));
-    double speed = 0;
+    sweep.add(s, i);
     const SweptPiece<double>& piece = sweep.rough.back();
     for (int k = 0; k <= 64; ++k) {
-      const double v = k / 64.0, x = piece.x.slope(v), y = piece.y.slope(v), z = piece.z.slope(v);
-      speed = std::max(speed, std::sqrt(x * x + y * y + z * z) + std::abs(piece.r.slope(v)));
+      const double v = k / 64.0;
       o.grow({piece.x.at(v), piece.y.at(v), piece.z.at(v)}, std::abs(piece.r.at(v)));
     }
-    sweep.speed.push_back(1.1 * speed + 1e-9);
   }
+  // The distance changes no faster than the place.
+  o.clear = [sweep](const Vec3d& a, const Vec3d& b) {
+    return sweep.side_of((a + b) * 0.5, 0.5 * length(b - a) + 1e-12) != Sweep::Side::unclear;
+  };
   o.f = [sweep](const Vec3l& p) { return sweep.distance(p); };
   return o;
 }
