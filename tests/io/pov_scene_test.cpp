@@ -727,6 +727,7 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
   }
   cases.push_back({"pigment { rgb <1, 0.5, 0> }", "F(X, Y, Z).green"});
   cases.push_back({"pigment { marble rotate 40*z }", "F(X, Y, Z).gray"});
+  cases.push_back({"sum(i, 1, 4, prod(k, 1, i, x + k * y - i)) - prod(i, 2, 1, z)", "F(X, Y, Z)"});
   cases.push_back({"pattern { checker scale 0.3 }", "F(X, Y, Z)"});
   std::string text = "#version 3.7;\n";
   const Vec3d places[] = {{0.31, 0.42, 0.73}, {-0.87, 0.13, 0.55}, {0.05, -0.64, -0.21}, {0.9, 0.95, -0.8}};

@@ -241,7 +241,7 @@ class Writer {
       case Op::parameter:
         return parameters_.at(node.index);
       case Op::call:
-        return call(node.name, operands);
+        return node.function != nullptr ? loop(node, operands) : call(node.name, operands);
       case Op::internal:
         return internal(node.index, operands);
       case Op::user:
@@ -275,6 +275,23 @@ class Writer {
       if (matrix[i][node.index] != 0)
         sum += fmt::format(" + {} * {}", number_of(matrix[i][node.index]), operands[i]);
     return "(" + sum + ")";
+  }
+
+  /// `sum` and `prod`, written out; the body's first parameter is the counter.
+  std::string loop(const FunctionNode& node, const std::vector<std::string>& operands) const {
+    const std::optional<double> first = constant(operands.at(0)), last = constant(operands.at(1));
+    if (!first || !last) throw Unwritable{"a loop whose ends depend on the place"};
+    const bool is_sum = node.name == "sum";
+    std::string text;
+    std::vector<std::string> parameters(operands.begin() + 1, operands.end());
+    for (double counter = *first; counter <= *last; ++counter) {
+      parameters[0] = number_of(counter);
+      const std::string term = Writer(*node.function, parameters, context_, depth_ + 1, pigment_).text();
+      text += fmt::format("{}{}", text.empty() ? "" : is_sum ? " + " : " * ", term);
+      if (text.size() > kMaxExpressionLength || counter + 1 == counter)
+        throw Unwritable{"a loop of too many steps"};
+    }
+    return text.empty() ? (is_sum ? "0" : "1") : "(" + text + ")";
   }
 
   static std::string spline(const FunctionNode& node, const std::vector<std::string>& operands) {
