@@ -93,6 +93,7 @@ std::vector<LightSource> light_sources(const Scene& scene) {
     if (i >= scene.light_traits.size()) continue;
     sources.back().shadows = scene.light_traits[i].shadows;
     sources.back().highlights = scene.light_traits[i].highlights;
+    sources.back().dimmed_by_fog = scene.light_traits[i].dimmed_by_fog;
   }
   return sources;
 }

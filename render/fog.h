@@ -1,6 +1,6 @@
 #pragma once
 /// \file Fog as Whitted's model has it: it veils what a ray meets by the way that the ray goes through it,
-/// and takes no light from lamps. That of POV-Ray (its user documentation, 3.7, "Fog").
+/// and takes light from the lamps that say so. That of POV-Ray (its user documentation, 3.7, "Fog").
 
 #include <span>
 

@@ -296,6 +296,9 @@ struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
   std::uint32_t samples = 4;  ///< per pixel, in kPixelSamples
   std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, in kDepths
+  /// Mirrored and refracted rays that change the picture by less are not traced in Whitted's model, [0, 1]:
+  /// the adaptive depth of R. A. Hall, D. P. Greenberg: A Testbed for Realistic Image Synthesis, 1983.
+  double cutoff = 1 / 4096.0;
   std::uint32_t seed = 0;
   double ao_radius =
       0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
@@ -317,6 +320,8 @@ struct IntegratorSettings {
     p.choice("kind", kind, kIntegratorKinds, "what is computed for a pixel");
     p.field("samples", samples, kPixelSamples, "per pixel");
     p.field("depth", depth, kDepths, "bounces after the camera ray");
+    p.field("cutoff", cutoff, kUnitInterval,
+            "`whitted`: mirrored and refracted rays that change the picture by less are not traced");
     p.field("seed", seed, kAnySeed, "of the random numbers");
     p.field("ao_radius", ao_radius, kNonNegative, "`ao`: reach of rays; 0: a tenth of the scene's diagonal");
     p.field("clamp", clamp, kNonNegative, "brighter samples are darkened to it, which loses light; 0: none");
@@ -418,6 +423,7 @@ struct LightTraits {
   std::uint32_t list = kNoId;  ///< index into Scene::light_lists; kNoId: it lights all objects
   bool shadows = true;     ///< in Whitted's model, of lights that are no environment: things are in its way
   bool highlights = true;  ///< likewise: it shows Phong's highlights
+  bool dimmed_by_fog = false;  ///< likewise: fog on its way takes light
 };
 
 /// The group of all light that is in no other: that of lights without a group, the background and media.

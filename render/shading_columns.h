@@ -34,6 +34,7 @@ struct LightSource {
   double tightness = 0;    ///< of a spot
   bool shadows = true;     ///< things are in its way
   bool highlights = true;  ///< it shows Phong's highlights
+  bool dimmed_by_fog = false;  ///< fog on its way takes light
 };
 
 /// What local shading needs of a material, in one cache line. Numbered like World::materials.
@@ -63,6 +64,7 @@ struct ShadingColumns {
   static constexpr std::size_t kGroup = 16;  ///< the most lanes of any instruction set
 
   std::size_t count = 0;
+  float cutoff = 0;               ///< IntegratorSettings::cutoff
   std::uint32_t ray[kMost];       ///< entry of the wavefront's rays
   std::uint32_t material[kMost];  ///< index of the ShadingMaterial
 
@@ -88,9 +90,6 @@ struct ShadingColumns {
 
   RaisedPoints* raised = nullptr;  ///< of the hits
 };
-
-/// Rays that change a pixel by less than this are not traced.
-inline constexpr float kLeastThroughput = 1 / 4096.0f;
 
 /// The mirrored or the refracted rays of hits; entry k leaves hit k.
 struct BounceColumns {

@@ -40,6 +40,23 @@ std::string helix2(const Operands& o) {
   return filled("$0 - $1", {section(u, v, o[8]), o[5]});
 }
 
+/// f_helical_torus: a strand at the distance $8 from a ring of radius $3, which goes $4 times around the axis
+/// of the ring and $5 times around its tube. Along its turn a place is $9 times the square of its angle away.
+/// It is $6 thick, with grooves of the period $10 and the amplitude $11 that turn by $12 around the axis.
+std::string helical_torus(const Operands& o) {
+  const std::string axis = filled("hypot($0, $2)", o);
+  const std::string out = filled("hypot($0 - $1, $2) - $3", {axis, o[3], o[1], o[8]});
+  const std::string around = filled("atan2(-$0, $1)", {o[0], o[2]});
+  // Where a place is in the winding that is nearest, from -pi to pi.
+  const std::string turn =
+      filled("-$0 * $1 - $2 * atan2($3 - $4, $5)", {o[4], around, o[5], o[3], axis, o[1]});
+  const std::string part = filled("pi - $0 + 2 * pi * floor($0 / (2 * pi))", {turn});
+  const std::string away = filled("min(sqrt($0^2 + $1 * $2^2), $0 + 2 * $3)", {out, o[9], part, o[8]});
+  const std::string groove =
+      filled("cos($0 * atan2($1 * $2, $3) + $4 * $5)", {o[10], o[11], part, out, o[12], around});
+  return filled("min($0 - $1 * $2, $3 + $4 - $5) - $6", {away, o[6], groove, axis, o[3], o[8], o[7]});
+}
+
 /// f_spiral: a tube that winds about the origin in the plane of x and z, each turn $3 farther out, in a ball
 /// of radius $5.
 std::string spiral(const Operands& o) {
@@ -101,7 +118,8 @@ struct Winding {
   std::size_t operands;
   std::string (*text)(const Operands&);
 };
-constexpr std::array<Winding, 7> kWindings{{
+constexpr std::array<Winding, 8> kWindings{{
+    {24, 13, helical_torus},
     {25, 10, helix1},
     {26, 10, helix2},
     {27, 3, [](const Operands& o) { return honeycomb(o, false); }},

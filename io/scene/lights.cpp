@@ -36,7 +36,8 @@ void add_light(SceneLoad& load, Light light, LightTraits traits) {
     traits.motion = nullptr;
   }
   load.scene.lights.push_back(std::move(light));
-  if (!traits.motion && traits.group.empty() && traits.list == kNoId && traits.shadows && traits.highlights)
+  if (!traits.motion && traits.group.empty() && traits.list == kNoId && traits.shadows && traits.highlights &&
+      !traits.dimmed_by_fog)
     return;
   load.scene.light_traits.resize(load.scene.lights.size());
   load.scene.light_traits.back() = std::move(traits);
@@ -82,6 +83,7 @@ void describe_traits(auto& p, LightTraits& traits) {
 void describe_shadows(auto& p, LightTraits& traits) {
   p.field("shadows", traits.shadows, "`whitted`: whether things are in its way");
   p.field("highlights", traits.highlights, "`whitted`: whether it shows highlights");
+  p.field("dimmed_by_fog", traits.dimmed_by_fog, "`whitted`: whether fog on its way takes light");
 }
 /// Warns where these mean nothing.
 void check_shadows(SceneLoad& load, const Fields& fields, const LightTraits& traits) {
@@ -89,6 +91,7 @@ void check_shadows(SceneLoad& load, const Fields& fields, const LightTraits& tra
   const bool path = oktett::traits(kind).traces_paths;
   load.warn_if_unused(fields, "shadows", path && !traits.shadows, "all light of 'path' has shadows");
   load.warn_if_unused(fields, "highlights", path && !traits.highlights, "all light of 'path' has highlights");
+  load.warn_if_unused(fields, "dimmed_by_fog", path && traits.dimmed_by_fog, "there is no fog in 'path'");
 }
 void describe_direction(auto& p, const char* key, Vec3d& direction, const char* meaning) {
   p.field(key, direction, meaning);

@@ -89,6 +89,7 @@ void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
     return fmt::format("it is for {}, but the integrator is {}", kinds, quote(kind->name));
   };
   warn("depth", !traits(s.kind).bounces(), only("'whitted' and 'path'"));
+  warn("cutoff", !whitted, only("'whitted'"));
   warn("ao_radius", !traits(s.kind).ao_radius && s.ao_radius > 0, only("'ao'"));
   warn("caustics", !path && s.caustics.photons > 0, only("'path'"));
   warn("light_samples", !whitted && s.light_samples > 0, only("'whitted'"));

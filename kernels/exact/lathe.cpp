@@ -273,7 +273,8 @@ void Lathe::find(const LatheElement& e, const Piece& piece, const OneRay& ray, F
   if (std::abs(dy) <= kShallow * std::sqrt(dd)) return find_shallow(e, piece, ray, excess, out);
   if (!ray.on_surface && sign_of(excess[0]) == sign_of(excess[1])) return;
   SignChanges found;
-  find_sign_changes(ray.c, 6, roots::Method::automatic, kMaxRayDegree, found);
+  found.count = ray.count;
+  std::copy_n(ray.changes, ray.count, found.s);
   make_agree(found, sign_of(excess[0]), sign_of(excess[1]), certainty[0], certainty[1]);
   for (int i = 0; i < found.count; ++i) {
     const double t = place_on(ray.line, piece, found.s[i], (cubic(piece.y, found.s[i]) - oy) / dy);

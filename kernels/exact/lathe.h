@@ -57,16 +57,21 @@ struct Lathe {
                    lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
     if (lanes == 0) return;
     const LineColumns<D> rays(line, range);
-    double columns[7][W];
-    for (int i = 0; i < 7; ++i) c[i].store(columns[i]);
+    double places[kMostChanges][W];
+    D changes[kMostChanges], turns[kMostChanges];
+    for (D& s : changes) s = D(roots::kNoRoot);
+    const auto steep = there & ~settled & ~shallow;
+    if (any(steep)) changes_in_lanes(c, 2 * piece.degree, steep, changes, turns);
+    for (int k = 0; k < kMostChanges; ++k) changes[k].store(places[k]);
     CrossingColumns<K, D> lists(out);
     for (int i = 0; i < W; ++i) {
       if (!(lanes >> i & 1)) continue;
       OneRay one;
       for (int k = 0; k < 3; ++k) one.line[k] = rays.o(i)[k], one.line[3 + k] = rays.d(i)[k];
-      for (int k = 0; k < 7; ++k) one.c[k] = columns[k][i];
       one.a = rays.a(i), one.b = rays.b(i), one.begin = rays.begin(i);
       one.on_surface = doubtful >> i & 1;
+      for (one.count = 0; one.count < kMostChanges && places[one.count][i] < roots::kNoRoot; ++one.count)
+        one.changes[one.count] = places[one.count][i];
       Found found;
       find(e, piece, one, found);
       for (int k = 0; k < K && k < found.count; ++k)
@@ -88,12 +93,15 @@ struct Lathe {
   /// One that rises by less than this times its way is solved only where the piece is at its heights: over
   /// all heights its way is long, and the rounding of the polynomial grows with the square of that.
   static constexpr double kShallow = 0x1p-3;
+  static constexpr int kMostChanges = 6;
 
   struct OneRay {
-    double line[6];     ///< origin and direction
-    double c[7], a, b;  ///< the polynomial in v, made from the part of the line from a to b
-    double begin;       ///< nothing counts before
-    bool on_surface;    ///< whether it may meet the surface at all
+    double line[6];   ///< origin and direction
+    double a, b;      ///< the part of the line that is looked at
+    double begin;     ///< nothing counts before
+    bool on_surface;  ///< whether it may meet the surface at all
+    int count;  ///< changes of sign of the polynomial in v, in ascending order, unless the ray is shallow
+    double changes[kMostChanges];
   };
   /// In ascending order.
   struct Found {

@@ -4,8 +4,7 @@
 ///
 /// `field` gives, in lanes,
 /// - field.over(t): Dual<Interval<D>>, enclosures of f and f' over an interval of t;
-/// - field.at(t): an enclosure of f at a point;
-/// - Field::kCentred, if what over(t) gives is as narrow as the mean value form.
+/// - field.at(t): an enclosure of f at a point.
 ///
 /// The ray is walked from a to b. A step over which 0 is not in f (R. E. Moore: Interval Analysis, 1966), nor
 /// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long, but for
@@ -133,9 +132,7 @@ struct March {
     auto noise = open & ~open;
     // Where the first step has one sign, so has its beginning.
     if (first && any(open)) s = first_sign = select(open, certain_sign(field.at(t)), first_sign);
-    auto asked = open & smooth;
-    // Rounding matters in short steps alone; for longer ones the middle would tell nothing new.
-    if constexpr (requires { Field::kCentred; }) asked = asked & (e - t <= least * D(0x1p28));
+    const auto asked = open & smooth;
     if (any(asked)) {
       const Interval<D> at_m = field.at(m);
       const Interval<D> mean = at_m + f.d * (x - Interval<D>(m));

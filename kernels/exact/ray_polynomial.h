@@ -7,6 +7,7 @@
 /// all coefficients, and with it every rounding error, stays below what the same polynomial with positive
 /// signs has at the far corner of the box that the ray is in. docs/numerics.md draws the bound from this.
 
+#include <algorithm>
 #include <utility>
 
 #include "kernels/exact/exact.h"
@@ -85,17 +86,36 @@ OKTETT_INLINE D common_sign(const D* c, int degree) {
   return select(middle + ends < D(0.0), D(-1.0), D(1.0));
 }
 
-/// The first change of sign, where the degree is N, in lanes of `active`.
-template <int N, class D>
-OKTETT_NOINLINE void first_of_degree(const D* c, const typename D::M& active, D& s, D& turn) {
-  const auto found = roots::certified_roots<N, 1, roots::Touching::drop>(c, D(-1.0), D(1.0), active);
-  s = select(active, found.x[0], D(roots::kNoRoot));
-  D value, error, slope, value_at_root, error_at_root, slope_at_root;
-  roots::lanes::evaluate<N>(c, D(-1.0), value, error, slope);
-  roots::lanes::evaluate<N>(c, select(s < D(roots::kNoRoot), s, D(0.0)), value_at_root, error_at_root,
-                            slope_at_root);
-  const auto falls = select(abs(value) > error, value, -slope_at_root) > D(0.0);
-  turn = select(falls, D(-1.0), D(1.0));
+/// The first K changes of sign, where the degree is N, in lanes of `active`.
+template <int N, int K, class D>
+OKTETT_NOINLINE void changes_of_degree(const D* c, const typename D::M& active, D (&s)[K], D (&turn)[K]) {
+  constexpr int M = std::min(N, K);
+  const auto found = roots::certified_roots<N, M, roots::Touching::drop>(c, D(-1.0), D(1.0), active);
+  for (int k = 0; k < M; ++k) s[k] = select(active, found.x[k], D(roots::kNoRoot));
+  // The turns follow from the sign before the first, or where that is uncertain from the steepest one.
+  D value, error, steepest;
+  roots::lanes::evaluate<N>(c, D(-1.0), value, error, steepest);
+  steepest = D(0.0);
+  for (int k = 0; k < M; ++k) {
+    const auto there = s[k] < D(roots::kNoRoot);
+    if (k > 0 && none(there & ~(abs(value) > error))) break;
+    D at, error_at, slope;
+    roots::lanes::evaluate<N>(c, select(there, s[k], D(0.0)), at, error_at, slope);
+    steepest = select(there & (abs(steepest) < abs(slope)), k % 2 == 0 ? slope : -slope, steepest);
+  }
+  const auto falls = select(abs(value) > error, value, -steepest) > D(0.0);
+  const D first = select(falls, D(-1.0), D(1.0));
+  for (int k = 0; k < M; ++k) turn[k] = k % 2 == 0 ? first : -first;
+}
+
+/// The same where the degree is known when the program runs: at most 8.
+template <int K, class D>
+OKTETT_INLINE void changes_in_lanes(const D* c, int degree, const typename D::M& active, D (&s)[K],
+                                    D (&turn)[K]) {
+  const auto solve = [&]<int... N>(std::integer_sequence<int, N...>) {
+    ((degree == N + 1 ? changes_of_degree<N + 1>(c, active, s, turn) : void()), ...);
+  };
+  solve(std::make_integer_sequence<int, 8>());
 }
 
 /// Lanes in which a polynomial of any degree surely has no root in -1 <= s <= 1: on each half, all of its
@@ -128,15 +148,12 @@ OKTETT_NOINLINE void sign_changes(const D* c, int degree, roots::Method method, 
                                   D (&s)[K], D (&turn)[K]) {
   for (int k = 0; k < K; ++k) s[k] = D(roots::kNoRoot), turn[k] = D(0.0);
   if (none(active) || degree < 1) return;
-  if constexpr (K == 1) {
-    if (method == roots::Method::automatic && degree <= 8) {
-      const auto solve = [&]<int... N>(std::integer_sequence<int, N...>) {
-        ((degree == N + 1 ? first_of_degree<N + 1>(c, active, s[0], turn[0]) : void()), ...);
-      };
-      return solve(std::make_integer_sequence<int, 8>());
-    }
-  }
   constexpr int W = D::kWidth;
+  if (method == roots::Method::automatic && degree <= 8) {
+    const auto wanted = K == 1 ? active : active & ~no_sign_change(c, degree);
+    if (any(wanted)) changes_in_lanes(c, degree, wanted, s, turn);
+    return;
+  }
   double columns[kMaxRayDegree + 1][W], places[K][W], turns[K][W];
   for (int i = 0; i <= degree; ++i) c[i].store(columns[i]);
   for (int k = 0; k < K; ++k) s[k].store(places[k]), turn[k].store(turns[k]);

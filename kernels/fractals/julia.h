@@ -1,7 +1,7 @@
 #pragma once
 /// \file Filled Julia sets of q^2 + c or q^3 + c after a number of iterations, in the quaternions (A. Norton:
 /// Generation and Display of Geometric Fractals in 3-D, 1982) or hypercomplex numbers, solved by enclosures
-/// along the ray (kernels/exact/march.h).
+/// along the ray (kernels/exact/piece_march.h).
 ///
 /// With z_0 = q and z_k+1 = z_k^p + c, the surface is where |z_n| = R, which is (1 + sqrt(1 + 4 |c|)) / 2 or
 /// more; what is farther out never comes back. Along a piece of the ray, h from its middle with |h| <= d,
@@ -19,7 +19,8 @@
 /// out.
 
 #include "kernels/exact/cell_tree.h"
-#include "kernels/exact/march.h"
+#include "kernels/exact/line_columns.h"
+#include "kernels/exact/piece_march.h"
 #include "kernels/fractals/julia_data.h"
 
 namespace oktett {
@@ -57,9 +58,11 @@ struct JuliaNumber {
   OKTETT_INLINE JuliaNumber next_slope(const JuliaElement& e, const JuliaNumber& w) const {
     const D two(2.0), three(3.0);
     if (e.hypercomplex) return e.power == 2 ? hyper(w).times(two) : hyper(*this).hyper(w).times(three);
-    if (e.power == 2)
-      return {two * ((r * w.r - i * w.i) - (j * w.j + k * w.k)), two * (r * w.i + w.r * i),
-              two * (r * w.j + w.r * j), two * (r * w.k + w.r * k)};
+    if (e.power == 2) {
+      const D r2 = two * r, by = two * w.r;
+      return {two * ((r * w.r - i * w.i) - (j * w.j + k * w.k)), r2 * w.i + by * i, r2 * w.j + by * j,
+              r2 * w.k + by * k};
+    }
     const D s = (i * i + j * j) + k * k, turn = two * ((i * w.i + j * w.j) + k * w.k), rr = three * (r * r);
     const D m = rr - s, by = D(6.0) * (r * w.r) - turn;
     return {(rr - three * s) * w.r - three * (r * turn), by * i + m * w.i, by * j + m * w.j,
@@ -73,7 +76,8 @@ struct JuliaNumber {
       q = hyper(*this);
       if (e.power == 3) q = q.hyper(*this);
     } else if (e.power == 2) {
-      q = {(r * r - i * i) - (j * j + k * k), two * (r * i), two * (r * j), two * (r * k)};
+      const D r2 = two * r;
+      q = {(r * r - i * i) - (j * j + k * k), r2 * i, r2 * j, r2 * k};
     } else {
       const D s = (i * i + j * j) + k * k, m = three * (r * r) - s;
       q = {r * (r * r - three * s), m * i, m * j, m * k};
@@ -96,7 +100,6 @@ struct JuliaField {
   /// Roundings are below this, relative; one iteration makes fewer than eight, of cubes fewer than 32.
   static constexpr double kRound = 0x1p-49, kRoundOfCubes = 0x1p-47;
   static constexpr double kHuge = 1e40;
-  static constexpr bool kCentred = true;
 
   using Number = JuliaNumber<D>;
 
@@ -104,53 +107,40 @@ struct JuliaField {
   static OKTETT_INLINE D root_above(const D& square) {
     return to_double(sqrt(to_float(square))) * D(1 + 0x1p-22) + D(0x1p-62);
   }
-  double sum_of_c() const {
-    return std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
-  }
 
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
-    const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
-        radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
+    const D zero(0.0), two(2.0), three(3.0), u(round()), limit(e.radius * e.radius);
     Number z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
-    const D far = root_above((o.x * o.x + o.y * o.y) + o.z * o.z);
-    D eps = u * (far + root_above(z.norm2())), phi = zero, escaped_by = zero;
-    auto escaped = m == m;
-    escaped = escaped & ~escaped;
-    auto lost = escaped;
-    const D cc(sum_of_c());
-    for (int n = 0; n <= e.iterations; ++n) {
-      const D zz = z.norm2(), length = root_above(zz), slope = root_above(w.norm2());
-      const D r = slope * half + eps, out = radius + r;
-      const auto leaves = ~escaped & ~lost & (zz > out * out);
-      escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
-      lost = lost | ~(length + r + slope + phi < D(kHuge));
-      const auto stays = ~(escaped | lost);
-      if (n == e.iterations || none(stays)) break;
-      const D all = slope + phi;
-      // What has escaped or is lost goes on as anything: to hold it where it was would make each step wait.
+    D eps = first_error(z), phi = zero, slope(0.0), r(0.0);
+    Escape escape(e);
+    const Rounding rounding(e);
+    for (int n = 0;; ++n) {
+      const D zz = z.norm2(), length = root_above(zz);
+      slope = root_above(w.norm2()), r = slope * half + eps;
+      // What has escaped goes on as anything: to hold it where it was would make each step wait. Where eps or
+      // phi become too great they stay so.
+      escape.look(zz, r);
+      if (n == e.iterations || escape.all()) break;
+      const D all = slope + phi, rounded = phi + rounding.of_slope * slope;
       if (e.power == 2) {
-        eps = product * (two * length * eps + r * r) + u * (zz + cc + length * slope * half);
-        phi = product * (two * (length * phi + r * all)) + u * length * slope;
+        eps = rounding.product * (two * length * eps + r * (r + rounding.linear)) + rounding.least;
+        phi = two * rounding.product * (length * rounded + r * all);
       } else {
-        const D squared = product * product;
-        const D off = three * zz * eps + (three * length + r) * (r * r);
-        const D turn = three * (zz * phi + (two * length + r) * r * all);
-        eps = squared * off + u * (zz * length + cc + zz * slope * half);
-        phi = squared * turn + u * zz * slope;
+        const D cubic = (three * length + (r + rounding.quadratic)) * r + rounding.linear;
+        eps = rounding.product * (three * zz * eps + cubic * r) + rounding.least;
+        phi = three * rounding.product * (zz * rounded + (two * length + r) * r * all);
       }
       w = z.next_slope(e, w), z = z.next(e);
     }
-    const D zz = z.norm2(), length = root_above(zz), slope = root_above(w.norm2()), r = slope * half + eps;
-    const D by_h = z.twice_along(w);
+    const D zz = z.norm2(), length = root_above(zz), by_h = z.twice_along(w);
     const D off = abs(by_h) * half + two * length * eps + u * (zz + limit) + u * length * slope * half;
     const D turn = two * (slope * r + (length + r) * phi) + u * length * slope;
     const D value = zz - limit, huge(kHuge * kHuge);
-    const auto told = ~(escaped | lost);
-    const D low = select(told, value - off, select(escaped, escaped_by * D(1 - 0x1p-40), -huge));
-    const D high = select(told, value + off + r * r, select(escaped, max(escaped_by, low), huge));
-    return {{low, high}, {select(told, by_h - turn, -huge), select(told, by_h + turn, huge)}};
+    const auto told = ~escape.escaped() & (r + phi < D(kHuge));
+    const Interval<D> f = escape.enclosure(told, value - off, value + off + r * r);
+    return {f, {select(told, by_h - turn, -huge), select(told, by_h + turn, huge)}};
   }
 
   OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const {
@@ -159,32 +149,70 @@ struct JuliaField {
   }
   /// The value of about(s, 0), without the derivative and what it takes.
   OKTETT_INLINE Interval<D> at(const D& s) const {
-    const D zero(0.0), two(2.0), three(3.0), u(e.power == 2 ? kRound : kRoundOfCubes), product(e.product()),
-        radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
+    const D two(2.0), three(3.0), u(round()), limit(e.radius * e.radius);
     Number z{o.x + s * d.x, o.y + s * d.y, o.z + s * d.z, D(e.slice)};
-    const D far = root_above((o.x * o.x + o.y * o.y) + o.z * o.z), cc(sum_of_c());
-    D zz = z.norm2(), length = root_above(zz), eps = u * (far + length), escaped_by = zero;
-    auto escaped = s == s;
-    escaped = escaped & ~escaped;
-    auto lost = escaped;
+    D zz = z.norm2(), length = root_above(zz), eps = first_error(z);
+    Escape escape(e);
+    const Rounding rounding(e);
     for (int n = 0;; ++n) {
-      const D out = radius + eps;
-      const auto leaves = ~escaped & ~lost & (zz > out * out);
-      escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
-      lost = lost | ~(length + eps < D(kHuge));
-      const auto stays = ~(escaped | lost);
-      if (n == e.iterations || none(stays)) break;
-      eps = e.power == 2 ? product * (two * length * eps + eps * eps) + u * (zz + cc)
-                         : product * product * (three * zz * eps + (three * length + eps) * (eps * eps)) +
-                               u * (zz * length + cc);
+      escape.look(zz, eps);
+      if (n == e.iterations || escape.all()) break;
+      const D factor =
+          e.power == 2 ? two * length + (eps + rounding.linear)
+                       : three * zz + ((three * length + (eps + rounding.quadratic)) * eps + rounding.linear);
+      eps = rounding.product * (factor * eps) + rounding.least;
       z = z.next(e);
       zz = z.norm2(), length = root_above(zz);
     }
-    const D value = zz - limit, off = two * length * eps + u * (zz + limit), huge(kHuge * kHuge);
-    const auto told = ~(escaped | lost);
-    const D low = select(told, value - off, select(escaped, escaped_by * D(1 - 0x1p-40), -huge));
-    return {low, select(told, value + off + eps * eps, select(escaped, max(escaped_by, low), huge))};
+    const D value = zz - limit, off = two * length * eps + u * (zz + limit);
+    return escape.enclosure(~escape.escaped() & (eps < D(kHuge)), value - off, value + off + eps * eps);
   }
+
+ private:
+  double round() const { return e.power == 2 ? kRound : kRoundOfCubes; }
+  /// What rounding makes of the point itself.
+  OKTETT_INLINE D first_error(const Number& z) const {
+    return D(round()) * (root_above((o.x * o.x + o.y * o.y) + o.z * o.z) + root_above(z.norm2()));
+  }
+
+  /// Bounds on the roundings of an iteration of what has not escaped: with |z| <= R + r and
+  /// |w| half <= r those of squares, u (|z|^2 + |c| + |z| |w| half), are below
+  ///   u (R^2 + |c|) + 3 u R r + 2 u r^2,
+  /// and those of cubes, u (|z|^3 + |c| + |z|^2 |w| half), below
+  ///   u (R^3 + |c|) + 4 u R^2 r + 5 u R r^2 + 2 u r^3.
+  /// What their last terms add to r^2 and r^3 is in the product.
+  struct Rounding {
+    D product, of_slope, least, linear, quadratic;
+    explicit OKTETT_INLINE Rounding(const JuliaElement& e) {
+      const double u = e.power == 2 ? kRound : kRoundOfCubes, R = e.radius * (1 + 0x1p-20);
+      const double c = std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
+      const double k = e.product() * (1 + 4 * u);
+      product = D(e.power == 2 ? k : k * e.product());
+      of_slope = D(u);
+      least = D(u * ((e.power == 2 ? R * R : R * R * R) + c));
+      linear = D(e.power == 2 ? 3 * u * R : 4 * u * R * R);
+      quadratic = D(5 * u * R);
+    }
+  };
+
+  /// Which points surely leave the radius R, and by how much at least where they first do.
+  struct Escape {
+    D by, radius;  ///< `by` is positive where they do
+    explicit OKTETT_INLINE Escape(const JuliaElement& e) : by(0.0), radius(e.radius * (1 + 0x1p-40)) {}
+    /// An iterate is within r of one of the square zz.
+    OKTETT_INLINE void look(const D& zz, const D& r) {
+      const D out = radius + r;
+      by = select(escaped(), by, zz - out * out * D(1 + 0x1p-50));
+    }
+    OKTETT_INLINE typename D::M escaped() const { return D(0.0) < by; }
+    OKTETT_INLINE bool all() const { return none(~escaped()); }
+    /// [low, high] where that is told, else what is known of what has escaped, or nothing.
+    OKTETT_INLINE Interval<D> enclosure(const typename D::M& told, const D& low, const D& high) const {
+      const D huge(kHuge * kHuge), outside = min(by, huge);
+      return {select(told, low, select(escaped(), outside, -huge)),
+              select(told, high, select(escaped(), outside, huge))};
+    }
+  };
 };
 
 struct JuliaPool : ExactPool<JuliaElement> {
@@ -199,23 +227,32 @@ struct Julia {
   using Data = JuliaShape;
   using Pool = JuliaPool;
   static constexpr int kMaxCrossings = 16;
-  /// Rays that were mirrored or bent are rarely in one cell, and square roots of many lanes take long.
-  static constexpr bool kLoneLanes = true;
 
   static void add(Pool& pool, const JuliaShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    using A = typename D::Isa;
+    using Pieces = Simd<double, kDoubleLanes<A>, A>;
     const JuliaElement& e = pool.elements[cell.element];
-    const D zero(0.0), length = range.b - range.a;
-    const D whole = D(e.size) / sqrt(dot_lanes(line.d, line.d));
-    const auto place = [&](const D& o, const D& d) { return o + range.a * d; };
-    const JuliaField<D> field{
-        e, {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)}, line.d};
-    interval::march<K>(field, zero, length, length, max(length, whole), active, interval::Jumps::list, out);
-    place_crossings(out, [&](const D& s) { return range.a + s; });
-    for (D& part : out.part) part = D(0.0);
+    const LineColumns<D> rays(line, range);
+    CrossingColumns<K, D> lists;
+    for (unsigned rest = bits(active); rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      const double a = rays.a(lane), length = rays.b(lane) - a;
+      const Vec3d d = rays.d(lane);
+      const JuliaField<Pieces> field{e, broadcast<Pieces>(rays.o(lane) + d * a), broadcast<Pieces>(d)};
+      const double size = std::max(length, e.size / std::sqrt(dot(d, d)));
+      const interval::PieceMarch<K, JuliaField<Pieces>, Pieces> march(field, 0, length, length, size);
+      int k = 0;
+      march.each(size * 0x1p-42, [&](double x, double before) {
+        lists.t[k][lane] = a + x, lists.turn[k][lane] = -before, ++k;
+      });
+      const double up_to = march.up_to();
+      if (up_to < roots::kNoRoot) lists.up_to[lane] = a + up_to;
+    }
+    lists.load(out);
   }
 
   /// |z_n|^2 - R^2 and its gradient; farther out, those of the iterate that leaves.

@@ -373,7 +373,7 @@ template <class F>
 OKTETT_INLINE void put_bounces(const InteractionBlock& s, const ShadingColumns& c, std::size_t i,
                                unsigned lanes, const Vec3<F>& direction, const Vec3<F>& weight,
                                BounceColumns& out) {
-  const F zero(0.0f), least(kLeastThroughput);
+  const F zero(0.0f), least(c.cutoff);
   const Vec3<F> arriving = load_lanes<F>(c.throughput, i);
   const Vec3<F> throughput{arriving.x * weight.x, arriving.y * weight.y, arriving.z * weight.z};
   const unsigned sent = lanes & ~bits((weight.x == zero) & (weight.y == zero) & (weight.z == zero)) &

@@ -1,6 +1,7 @@
 #include "render/transport/light_rays.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "render/light/light_share.h"
 #include "render/shading_lanes.h"
@@ -32,7 +33,21 @@ static void end_light(const LightSource& light, std::size_t first, ShadowQueue& 
   }
 }
 
-void finish_light_rays(const LightSource& light, std::size_t first, ShadowQueue& queue) {
+/// Of a directional light fog lies before its place, if it has one.
+static void dim_light(const LightSource& light, std::span<const Fog> fogs, std::size_t first,
+                      ShadowQueue& queue) {
+  for (std::size_t i = first; i < queue.size(); ++i) {
+    const Ray ray = queue.rays[i];
+    const Vec3d origin(ray.origin), way(ray.direction);
+    double distance = length(way);
+    if (light.directional) distance = std::numeric_limits<double>::infinity();
+    if (light.from_place) distance = std::max(dot(light.from - origin, Vec3d(light.place)), 0.0);
+    queue.light.set(i, queue.light[i] * pass_fogs(fogs, origin, normalize(way), distance).left);
+  }
+}
+
+void finish_light_rays(const LightSource& light, std::span<const Fog> fogs, std::size_t first,
+                       ShadowQueue& queue) {
   if (!light.directional && (light.fade.fades() || light.tightness > 0)) fade_light(light, first, queue);
   const Ray like;
   std::fill_n(queue.rays.tmin.data() + first, queue.size() - first, like.tmin);
@@ -40,6 +55,7 @@ void finish_light_rays(const LightSource& light, std::size_t first, ShadowQueue&
   const float tmax = !light.shadows ? 0 : light.directional ? like.tmax : kBeforeLight;
   std::fill_n(queue.rays.tmax.data() + first, queue.size() - first, tmax);
   if (light.from_place) end_light(light, first, queue);
+  if (light.dimmed_by_fog) dim_light(light, fogs, first, queue);
 }
 
 }  // namespace oktett

@@ -87,7 +87,7 @@ class FilledWay {
       Ray ray;
       ray.origin = origin, ray.direction = light.directional ? lit.target : lit.target - origin;
       queue.push_back(ray, ray_, scattered);
-      finish_light_rays(light, first, queue);
+      finish_light_rays(light, context_.fogs, first, queue);
     }
   }
 

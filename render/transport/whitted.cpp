@@ -164,7 +164,7 @@ void queue_in_order(const RenderContext& context, Wavefront& wavefront, const In
                     const BounceColumns& refracted) {
   for (std::size_t k = 0; k < c.count; ++k) {
     const std::uint32_t i = c.ray[k];
-    if (max_component(straight[k]) >= kLeastThroughput && admit(wavefront, i)) {
+    if (max_component(straight[k]) >= c.cutoff && admit(wavefront, i)) {
       const Vec3f direction = InteractionBlock::get(c.direction, k);
       push_bounce(wavefront, wavefront.next, i, offset_origin(found[k], direction), direction, straight[k],
                   Bounce::straight);
@@ -236,7 +236,7 @@ void push_shadow_rays(const RenderContext& context, const Wavefront& wavefront, 
     keep_listed(context, wavefront, found, light.list, c, first, queue);
     out.size = queue.size();
   }
-  finish_light_rays(light, first, queue);
+  finish_light_rays(light, context.fogs, first, queue);
 }
 
 /// Which points of the area lights the hit of a ray asks.
@@ -251,7 +251,7 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   if (context.tracks_insides) veil_hits(context, wavefront, which, count);
   ShadingColumns c;
   RaisedPoints raised = raised_points(context, wavefront, which, found);
-  c.count = count, c.raised = &raised;
+  c.count = count, c.raised = &raised, c.cutoff = static_cast<float>(context.settings.cutoff);
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), arriving_rays(wavefront), c);

@@ -94,6 +94,44 @@ Sampled torus(const char* name, double major, double minor) {
   return s;
 }
 
+/// The circles of an ovus, each as far as the others do not hide it: points of one that are inside of the egg
+/// are drawn again.
+Sampled ovus(const char* name, double bottom, double top) {
+  const double arc = 2 * std::max(bottom, top), low = arc - bottom, high = arc - top;
+  const double y = (low * low - high * high + bottom * bottom) / (2 * bottom),
+               x = std::sqrt(low * low - y * y);
+  // How far a point is from the egg's circles in its half-plane. The lines from the centre of the arc through
+  // those of the balls part them.
+  const auto off = [=](double rho, double h) {
+    const double from_arc = std::hypot(rho + x, h - y);
+    if ((h - y) * x < -y * (rho + x)) return std::hypot(rho, h) - bottom;
+    if ((h - y) * x > (bottom - y) * (rho + x)) return std::hypot(rho, h - bottom) - top;
+    return from_arc - arc;
+  };
+  Sampled s{name,
+            geometry(ExactShape{OvusShape{bottom, top}}),
+            {},
+            {},
+            {{0, 0, 0}, {0, bottom, 0}, {0, 0.5 * bottom, 0}, {0, 9, 0}, {0, -9, 0}}};
+  s.draw = [=](CaseRandom& r) {
+    for (;;) {
+      const double part = r.unit() * 3, angle = std::numbers::pi * r.sign(),
+                   around = std::numbers::pi * r.sign();
+      double rho = std::cos(angle), h = std::sin(angle);
+      if (part < 1)
+        rho *= bottom, h *= bottom;
+      else if (part < 2)
+        rho *= top, h = bottom + top * h;
+      else
+        rho = arc * rho - x, h = y + arc * h;
+      if (rho >= 0 && std::abs(off(rho, h)) < 1e-12)
+        return Vec3d{rho * std::cos(around), h, rho * std::sin(around)};
+    }
+  };
+  s.off = [=](const Vec3d& p) { return off(std::hypot(p.x, p.z), p.y); };
+  return s;
+}
+
 std::vector<Sampled> surfaces() {
   std::vector<Sampled> all;
   all.push_back({"sphere",
@@ -153,6 +191,9 @@ std::vector<Sampled> surfaces() {
   all.push_back(frustum("open frustum", ConeShape{low, high, 0.4, 1.2, true}, 0.4, 1.2, 1.5, true));
   all.push_back(torus("torus", 0.7, 0.3));
   all.push_back(torus("torus that meets itself", 0.5, 0.8));
+  all.push_back(ovus("ovus", 1, 0.6));
+  all.push_back(ovus("ovus on its tip", 0.8, 1.3));
+  all.push_back(ovus("pointed ovus", 1, 0.05));
   return all;
 }
 
@@ -347,7 +388,8 @@ std::string error_of(const std::vector<Geometry>& things) {
 // What does not tell its nearest points is named, also inside instances; rays and inside() still work.
 TEST(ClosestShapes, WhatDoesNotTellIsAnError) {
   const std::string others =
-      " has no nearest points; these have: mesh, sphere, plane, disk, box, polygon, torus, cylinder, cone, "
+      " has no nearest points; these have: mesh, sphere, plane, disk, box, polygon, torus, ovus, cylinder, "
+      "cone, "
       "prism. Ask it with rays or with inside()";
   ImplicitShape implicit;
   implicit.function = compile_function("x^2 + y^2 + z^2 - 0.5");

@@ -59,6 +59,18 @@ TEST_F(PovAtmosphere, FogsAreFogs) {
   EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"), "");
 }
 
+TEST_F(PovAtmosphere, FogDimsTheLampsThatSaySo) {
+  const auto light = [&](const std::string& words) {
+    return section("light_source { <0, 5, 0>, rgb 1 " + words + " }", "lights");
+  };
+  const std::string plain = "[{point: {position: [0, 5, 0], color: [1, 1, 1]}}]";
+  EXPECT_EQ(light(""), plain);
+  EXPECT_EQ(light("media_attenuation on"),
+            "[{point: {position: [0, 5, 0], color: [1, 1, 1], dimmed_by_fog: true}}]");
+  EXPECT_EQ(light("media_attenuation off"), plain);
+  EXPECT_EQ(light("media_attenuation on media_interaction off"), plain);
+}
+
 TEST_F(PovAtmosphere, RainbowsAreRainbows) {
   EXPECT_EQ(
       section("rainbow { direction <0, -1, 1> angle 41 width 3 distance 50 arc_angle 120 falloff_angle 60 "
@@ -162,6 +174,23 @@ TEST_F(PovAtmosphere, ImagesThatAreNotRepeatedEnd) {
   EXPECT_NE(warnings("sphere { 0, 1 pigment { image_map { ppm \"grey.ppm\" once map_type 1 } } }")
                 .find("'once' of an image that is not planar"),
             std::string::npos);
+}
+
+// Whether the numbers of an image are decoded depends on the kind of the file, its gamma and the version.
+TEST_F(PovAtmosphere, NumbersOfImagesAreDecodedAsInPovRay) {
+  dir.write("grey.img", "P3\n1 1\n255\n128 128 128\n");
+  const auto decoded = [&](const std::string& settings, const std::string& kind, const std::string& gamma) {
+    const std::string map = "image_map { " + kind + " \"grey.img\" " + gamma + " }";
+    return section(settings + " sphere { 0, 1 pigment { " + map + " } }", "materials").find("color_space") ==
+           std::string::npos;
+  };
+  for (const char* kind : {"png", "jpeg", "tga", "bmp", "gif"}) EXPECT_TRUE(decoded("", kind, "")) << kind;
+  for (const char* kind : {"ppm", "pgm", "tiff"}) EXPECT_FALSE(decoded("", kind, "")) << kind;
+  EXPECT_FALSE(decoded("", "png", "gamma 1.0"));
+  EXPECT_TRUE(decoded("", "ppm", "gamma 2.2"));
+  EXPECT_TRUE(decoded("", "ppm", "gamma srgb"));
+  EXPECT_FALSE(decoded("#version 3.6; global_settings { assumed_gamma 1 }", "png", ""));
+  EXPECT_FALSE(decoded("#version 3.7; global_settings { assumed_gamma 2.2 }", "png", ""));
 }
 
 TEST_F(PovAtmosphere, DefaultsNeedNoHash) {

@@ -135,6 +135,8 @@ TEST(PovQueries, InsideFollowsCombinations) {
   EXPECT_EQ(inside("union { sphere { 0, 1 } sphere { 5*x, 1 inverse } }", "<5,0,0>"), "0");
   EXPECT_EQ(inside("union { triangle { 0, x, y } sphere { 0, 1 } }", "0.2*z"), "1");
   EXPECT_EQ(inside("torus { 2, 0.5 rotate 90*x }", "<0,2.2,0>"), "1");
+  EXPECT_EQ(inside("ovus { 1, 0.5 }", "<0.93,0.4,0>"), "1");
+  EXPECT_EQ(inside("ovus { 1, 0.5 }", "<0.94,0.4,0>"), "0");
   EXPECT_NE(inside("triangle { 0, x, y }", "0.2*z").find("'inside' is not available for this object"),
             std::string::npos);
 }
@@ -263,6 +265,10 @@ TEST(PovQueries, FunctionsOfTheirOwnNumbersHaveValues) {
       {21, {0.3, -0.45, 0.7, -0.3, 0.46, 0.59, 1, 0.25, 35}, 0.2189925},
       {22, {0.3, -0.45, 0.7, 0.35}, -0.2405323},
       {23, {0.3, -0.45, 0.7, 0.22}, 0.0164158},
+      {24, {1.2, 0.3, 0.5, 1, 3, 1, 0.4, 0.1, 0.2, 0.3, 2, 0.5, 0.3}, 0.8959795},
+      {24, {-0.7, 0.25, 0.6, 0.8, 5, 2, 0.3, -0.2, 0.15, 0.1, 3, 1, 0}, 0.6463138},
+      {24, {0.1, 0.9, -0.2, 0.5, 2, 0, 0.2, 0, 0.3, 0.4, 1, 0.2, 1.5}, 0.4236068},
+      {24, {0.9, -0.1, -0.5, 1, 0, 0, 0.5, 0.05, 0.25, 0.5, 1, 1, 1}, -0.143582},
       {25, {0.3, -0.45, 0.7, 2, 5, 0.2, 0.8, 1.5, 0.7, 30}, -0.1300804},
       {30, {0.3, -0.45, 0.7, 0.48}, 10},
       {31, {0.3, -0.45, 0.7, 0.46, 0.71, 0.51}, -0.3720122},
@@ -315,7 +321,7 @@ TEST(PovQueries, FunctionsOfTheirOwnNumbersHaveValues) {
     EXPECT_NEAR(*value, c.value, 2e-6 * std::max(1.0, std::abs(c.value)));
   }
   EXPECT_FALSE(pov::internal_value(61, std::vector<double>{1, 2}));
-  EXPECT_FALSE(pov::internal_value(24, std::vector<double>(13, 0.5)));
+  EXPECT_FALSE(pov::internal_value(24, std::vector<double>(12, 0.5)));
   EXPECT_FALSE(pov::internal_value(4'000'000'000, std::vector<double>{1, 2, 3, 4}));
   EXPECT_EQ(debug_of("#declare F = function { internal(17) } #debug str(F(1, 2, 3, 1, 1, 1), 0, 4)"),
             "3.7417");

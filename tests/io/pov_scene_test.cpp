@@ -2,6 +2,7 @@
 
 #include "io/scene/pov_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -115,6 +116,10 @@ TEST(PovScene, ShapesHaveTheirKeys) {
       {"sphere_sweep { linear_spline 2, 0, 1, x, 0.5 }",
        "{sphere_sweep: {spheres: [[0, 0, 0, 1], [1, 0, 0, 0.5]]}}"},
       {"torus { 2, 0.5 }", "{torus: {major: 2, minor: 0.5}, transform: {rotate: [90, 0, 0]}}"},
+      {"ovus { 1, 0.5 }", "{ovus: {bottom_radius: 1, top_radius: 0.5}}"},
+      {"ovus { 1.5, 0 }", "{sphere: {center: [0, 0, 0], radius: 1.5}}"},
+      {"ovus { 1, 2.5 }", "{sphere: {center: [0, 1, 0], radius: 2.5}}"},
+      {"ovus { 0, 2 }", "{sphere: {center: [0, 0, 0], radius: 2}}"},
       {"quadric { <1,2,3>, <4,5,6>, <7,8,9>, -1 }",
        "{quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, -1]}}"},
       {"superellipsoid { <0.5, 0.5> }", "{superellipsoid: {p: 4, q: 4, r: 4}}"},
@@ -150,6 +155,23 @@ TEST(PovScene, ShapesHaveTheirKeys) {
       {"julia_fractal { <-0.1, 0.8, 0, 0> max_iteration 8 hypercomplex cube }",
        "{julia: {c: [-0.1, 0.8, 0, 0], iterations: 8, algebra: hypercomplex, power: 3, escape: 4}}"},
   });
+}
+
+// As POV-Ray does with radii that make no egg.
+TEST(PovScene, OviThatAreNoneAreSpheresOrErrors) {
+  const PovFiles files;
+  EXPECT_EQ(
+      files.warnings("#version 3.7;\novus { 1, 2 }"),
+      "scene.pov:2:1: warning: the top radius of this ovus is not less than twice the bottom radius: it is a "
+      "sphere\n");
+  EXPECT_EQ(files.warnings("#version 3.7;\novus { 1, 0 }"), "");
+  EXPECT_EQ(files.error("#version 3.7;\novus { -1, 0.5 }"),
+            "scene.pov:2:1: the radii of an ovus must not be negative");
+  EXPECT_NE(files.error("#version 3.7;\novus { 1 }").find("the top radius"), std::string::npos);
+  // Its box, which cuts an endless surface.
+  const std::string cut = files.object(
+      "#version 3.7;\nintersection { poly { 2, <1,0,0,0, 0,0,0, -1,0, 0> } ovus { 1, 1.2 translate 2*y } }");
+  EXPECT_NE(cut.find("bounds: {min: [-1."), std::string::npos) << cut;
 }
 
 TEST(PovScene, PolynomialsAreCutAtWhatBoundsThem) {
@@ -309,6 +331,35 @@ TEST(PovScene, PatternsAreTextures) {
   // Places outside of 0 to 1 show what lies between them.
   EXPECT_EQ(color("boxed color_map { [-1 rgb 0] [1 rgb 1] }"),
             "{boxed: {map: [[0, [0.5, 0.5, 0.5]], [1, [1, 1, 1]]]}}");
+}
+
+// The colours at the middles of cells around the origin, as POV-Ray 3.7.0.10 has them.
+TEST(PovScene, SquaresAndTrianglesHaveTheirOrder) {
+  const PovFiles files;
+  struct Shown {
+    const char* pattern;
+    double x, z;
+    int number;
+  };
+  const Shown shown[] = {
+      {"square", 0.5, 0.5, 0},        {"square", 0.5, 1.5, 1},        {"square", 1.5, 1.5, 2},
+      {"square", 1.5, 0.5, 3},        {"square", -0.5, -0.5, 2},      {"square", -1.5, -1.5, 0},
+      {"triangular", 0.5, 0.2, 0},    {"triangular", 0.01, 0.6, 1},   {"triangular", -0.5, 0.2, 2},
+      {"triangular", -0.5, -0.2, 3},  {"triangular", 0.01, -0.6, 4},  {"triangular", 0.5, -0.2, 5},
+      {"triangular", 1.5, 0.2, 4},    {"triangular", 1.01, 0.6, 3},   {"triangular", -1.01, 0.6, 5},
+      {"triangular", -1.01, -0.3, 0}, {"triangular", 1.51, -0.05, 1},
+  };
+  std::string text = "#version 3.7;\n";
+  for (const Shown& s : shown)
+    text += fmt::format(
+        "#declare F = function {{ pigment {{ {} rgb 0 rgb 0.1 rgb 0.2 rgb 0.3 rgb 0.4 rgb 0.5 }} }} "
+        "sphere {{ <F({}, 0.3, {}).red, 0, 0>, 1 }}\n",
+        s.pattern, s.x, s.z);
+  const Scene scene = load_scene(files.dir.write("cells.pov", text));
+  ASSERT_EQ(scene.objects.size(), std::size(shown));
+  for (std::size_t i = 0; i < std::size(shown); ++i)
+    EXPECT_NEAR(std::get<SphereShape>(scene.objects[i].shape).center.x, 0.1 * shown[i].number, 1e-6)
+        << shown[i].pattern << " " << shown[i].x << " " << shown[i].z;
 }
 
 TEST(PovScene, TexturesInPatternsAndLayers) {
@@ -498,7 +549,35 @@ TEST(PovScene, LightsAndSurroundings) {
             "{direction: [1, -5, 0], from: [0, 5, 0], color: [1, 1, 1]}}]");
   EXPECT_EQ(files.section(scene, "background"), "[0, 0.5, 1]");
   EXPECT_EQ(files.section(scene, "ambient_light"), "[2, 2, 2]");
-  EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 7}");
+  EXPECT_EQ(files.section(scene, "integrator"), "{kind: whitted, depth: 6, cutoff: 0.00392156862745098}");
+}
+
+/// Light that a mirror, one below or above it and the first one again send from a wall to the camera. The
+/// levels and the weights at which POV-Ray 3.7 ends were seen by running it.
+TEST(PovScene, ReflectionsEndAsInPovRay) {
+  const PovFiles files;
+  const auto seen = [&](const std::string& settings, double first, double second) {
+    Scene scene = load_scene(files.dir.write(
+        "scene.pov",
+        fmt::format("#version 3.7;\nglobal_settings {{ assumed_gamma 1 {} }}\n"
+                    "camera {{ location <0,0,-3> look_at 0 angle 1 }}\n"
+                    "plane {{ z, 0 rotate x*-45 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ y, -5 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ y, 5 finish {{ ambient 0 diffuse 0 reflection {} }} }}\n"
+                    "plane {{ z, -20 pigment {{ rgb 1 }} finish {{ ambient 0.5 diffuse 0 }} }}\n",
+                    settings, first, second, second)));
+    scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
+    return render(scene, {}).picture.find("R")->values[0];
+  };
+  const float all = seen("", 1, 1);
+  EXPECT_NEAR(all, 0.5, 1e-6);
+  EXPECT_EQ(seen("max_trace_level 3", 1, 1), 0);
+  EXPECT_EQ(seen("max_trace_level 4", 1, 1), all);
+  EXPECT_EQ(seen("", 1, 0.0038), 0);
+  EXPECT_NEAR(seen("", 1, 0.0041), 0.5 * 0.0041, 1e-6);
+  EXPECT_NEAR(seen("", 0.07, 1), 0.5 * 0.07 * 0.07, 1e-6);
+  EXPECT_EQ(seen("", 0.06, 1), 0);
+  EXPECT_NEAR(seen("adc_bailout 0", 0.06, 1), 0.5 * 0.06 * 0.06, 1e-6);
 }
 
 TEST(PovScene, WhatCannotBeMeantIsToldOnce) {
@@ -613,6 +692,78 @@ TEST(PovScene, NoiseInFunctions) {
   const double first = 0.9 - std::abs(2.0 * center(4).x - 1), second = 0.9 - std::abs(2.0 * center(4).y - 1);
   const double signal = first * first, weight = std::min(1.0, signal * 1.3);
   EXPECT_NEAR(value(0), signal + weight * second * second * std::pow(2.1, -0.7), 1e-6);
+}
+
+/// What a function is as an expression at places, and what the language says of it there: the values of
+/// splines, and of pigments by the textures that they become.
+TEST(PovScene, SplinesAndPigmentsInFunctions) {
+  const PovFiles files;
+  const std::string points =
+      " -1, <1, 2, 0>, -0.25, <0.5, -1, 1>, 0, <0, 0, 3>, 0.5, <2, 1, 1>, 0.75, <-1, 1, 1> ";
+  const std::string map =
+      " color_map { [0 rgb <1, 0, 0.5>] [0.25 rgbt <0, 1, 0.25, 0.5>] [0.25 rgbf <0.5, 0, 0, 1>] "
+      "[0.8 rgb 1] [1 rgb <0.25, 0.5, 0.75>] } ";
+  struct Case {
+    std::string declared, call;
+  };
+  std::vector<Case> cases;
+  for (const char* kind : {"linear", "quadratic", "cubic", "natural"})
+    for (const char* component : {"x", "y", "z"})
+      cases.push_back({std::string("spline { ") + kind + "_spline" + points + "}",
+                       std::string("F(Y + 0.2 * X).") + component});
+  for (const char* pattern :
+       {"planar", "spherical scale 3", "marble", "gradient <1, 2, 0>", "wood scale 0.3", "onion", "radial",
+        "cylindrical frequency 3 phase 0.2", "marble scale 0.2 sine_wave",
+        "gradient x ramp_wave frequency 2.5", "boxed scallop_wave", "leopard cubic_wave",
+        "wood poly_wave 1.5", "gradient y triangle_wave phase -0.7"})
+    for (const char* channel : {"red", "green", "blue"})
+      cases.push_back(
+          {std::string("pigment { ") + pattern + map + "}", std::string("F(X, Y, Z).") + channel});
+  cases.push_back({"pigment { checker rgb <1, 0.5, 0>, rgb <0.25, 0, 1> scale 0.4 }", "F(X, Y, Z).red"});
+  cases.push_back({"pigment { checker scale 0.4 }", "F(2 * X, Y, Z).green"});
+  for (const char* channel : {"red", "green", "blue"}) {
+    cases.push_back({"pigment { square scale 0.4 }", std::string("F(X, Y, Z).") + channel});
+    cases.push_back({"pigment { triangular scale 0.3 }", std::string("F(X, Y, Z).") + channel});
+  }
+  cases.push_back({"pigment { rgb <1, 0.5, 0> }", "F(X, Y, Z).green"});
+  cases.push_back({"pigment { marble rotate 40*z }", "F(X, Y, Z).gray"});
+  cases.push_back({"pattern { checker scale 0.3 }", "F(X, Y, Z)"});
+  std::string text = "#version 3.7;\n";
+  const Vec3d places[] = {{0.31, 0.42, 0.73}, {-0.87, 0.13, 0.55}, {0.05, -0.64, -0.21}, {0.9, 0.95, -0.8}};
+  const auto filled = [](std::string call, const std::string& x, const std::string& y, const std::string& z) {
+    for (const auto& [name, value] : {std::pair{'X', x}, std::pair{'Y', y}, std::pair{'Z', z}})
+      for (std::size_t at; (at = call.find(name)) != std::string::npos;) call.replace(at, 1, value);
+    return call;
+  };
+  for (const Case& c : cases) {
+    text += "#declare F = function { " + c.declared + " }\nisosurface { function { " +
+            filled(c.call, "x", "y", "z") + " + x * 1e-9 } contained_by { box { -9, 9 } } }\n";
+    for (const Vec3d& p : places)
+      text += "sphere { <" + filled(c.call, std::to_string(p.x), std::to_string(p.y), std::to_string(p.z)) +
+              ", 0, 0>, 1 }\n";
+  }
+  const Scene scene = load_scene(files.dir.write("values.pov", text));
+  constexpr std::size_t kStep = 1 + std::size(places);
+  ASSERT_EQ(scene.objects.size(), cases.size() * kStep);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(cases[i].declared + " " + cases[i].call);
+    const auto& shape = std::get<ImplicitShape>(std::get<ExactShape>(scene.objects[i * kStep].shape).form);
+    for (std::size_t k = 0; k < std::size(places); ++k) {
+      const Vec3d& p = places[k];
+      const double want = std::get<SphereShape>(scene.objects[i * kStep + 1 + k].shape).center.x;
+      EXPECT_NEAR(value_at(shape.function, p.x, p.y, p.z), want, 2e-6);
+    }
+  }
+  // What expressions do not have is left out with its reason.
+  const auto warning = [&](const std::string& declared) {
+    return files.warnings("#version 3.7;\n#declare F = function { pigment { " + declared +
+                          " } }\nisosurface { function { F(x, y, z).red } contained_by { box { -1, 1 } } }");
+  };
+  EXPECT_NE(warning("agate").find("contains a pattern 'agate', which"), std::string::npos)
+      << warning("agate");
+  EXPECT_NE(warning("marble turbulence 1").find("a pattern 'marble' with turbulence"), std::string::npos);
+  EXPECT_NE(warning("planar pigment_map { [0 marble] [1 rgb 1] }").find("a pigment of pigments"),
+            std::string::npos);
 }
 
 TEST(PovScene, HeightsOfPalettesAreNumbers) {

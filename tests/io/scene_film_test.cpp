@@ -49,6 +49,7 @@ TEST(SceneFilm, BadLensesAndFiltersAreErrors) {
   expect_starts(error("film: {filter_radius: 17}\n"), "scene.yaml:2:23: expected a number");
   expect_starts(error("film: {tone: sepia}\n"), "scene.yaml:2:14: expected srgb or filmic");
   expect_starts(error("film: {exposure: 65}\n"), "scene.yaml:2:18: expected a number");
+  expect_starts(error("integrator: {cutoff: 2}\n"), "scene.yaml:2:22: expected a number from 0 to 1");
   expect_starts(error("integrator: {clamp: -1}\n"), "scene.yaml:2:21: expected a number of at least 0");
 }
 
@@ -61,6 +62,8 @@ TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
   EXPECT_EQ(warnings("kind: ao, depth: 3"),
             "scene.yaml:2:31: warning: 'depth'" + no_effect +
                 "it is for 'whitted' and 'path', but the integrator is 'ao'\n");
+  EXPECT_EQ(warnings("kind: path, cutoff: 0.01"), "scene.yaml:2:35: warning: 'cutoff'" + no_effect +
+                                                      "it is for 'whitted', but the integrator is 'path'\n");
   EXPECT_EQ(warnings("ao_radius: 1"), "scene.yaml:2:25: warning: 'ao_radius'" + no_effect +
                                           "it is for 'ao', but the integrator is 'whitted'\n");
   EXPECT_EQ(warnings("caustics: true"), "scene.yaml:2:24: warning: 'caustics'" + no_effect +

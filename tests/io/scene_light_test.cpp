@@ -56,7 +56,8 @@ TEST(SceneLight, ReadsFadesAndLightsWithoutShadows) {
       "lights:\n"
       "  - point: {position: [1, 2, 3], fade: {distance: 4, power: 3}}\n"
       "  - spot: {position: [0, 5, 0], fade: {distance: 2}, tightness: 5, shadows: false}\n"
-      "  - directional: {highlights: false, from: [1, 2, 3], fade: {distance: 5}, beam: {outer_radius: 2}}\n"
+      "  - directional: {highlights: false, dimmed_by_fog: true, from: [1, 2, 3], fade: {distance: 5}, beam: "
+      "{outer_radius: 2}}\n"
       "  - point: {position: [1, 2, 3]}\n");
   ASSERT_EQ(scene.lights.size(), 4u);
   EXPECT_EQ(std::get<PointLight>(scene.lights[0]).fade, (LightFade{4, 3}));
@@ -68,6 +69,8 @@ TEST(SceneLight, ReadsFadesAndLightsWithoutShadows) {
   EXPECT_FALSE(scene.light_traits[1].shadows);
   EXPECT_TRUE(scene.light_traits[1].highlights);
   EXPECT_FALSE(scene.light_traits[2].highlights);
+  EXPECT_FALSE(scene.light_traits[1].dimmed_by_fog);
+  EXPECT_TRUE(scene.light_traits[2].dimmed_by_fog);
   const auto& far = std::get<DirectionalLight>(scene.lights[2]);
   EXPECT_EQ(far.from, (Vec3d{1, 2, 3}));
   EXPECT_EQ(far.fade, (LightFade{5, 2}));

@@ -5,6 +5,7 @@
 namespace oktett::scene_shape_test {
 namespace {
 
+using test::expect_errors;
 using test::expect_skipped;
 using test::expect_starts;
 using test::SceneFiles;
@@ -110,6 +111,26 @@ TEST(SceneShape, PolygonsMayBeConcaveAndTurnEitherWay) {
   const Scene scene = SceneFiles().load_v1(comb);
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_EQ(shape_of<PolygonShape>(scene).vertices.size(), 1002u);
+}
+
+TEST(SceneShape, OviHaveTwoRadii) {
+  const Scene scene = SceneFiles().load_v1(
+      "objects: [{ovus: }, {ovus: {bottom_radius: 2, top_radius: 3.5, normals: central}}]\n");
+  EXPECT_TRUE(scene.warnings.empty());
+  const auto& usual = std::get<OvusShape>(shape_of<ExactShape>(scene, 0).form);
+  EXPECT_EQ(usual.bottom_radius, 1);
+  EXPECT_EQ(usual.top_radius, 0.6);
+  const auto& tall = std::get<OvusShape>(shape_of<ExactShape>(scene, 1).form);
+  EXPECT_EQ(tall.bottom_radius, 2);
+  EXPECT_EQ(tall.top_radius, 3.5);
+  EXPECT_EQ(shape_of<ExactShape>(scene, 1).normals, NormalMethod::central);
+  expect_errors(
+      {{"objects: [{ovus: {top_radius: 2}}]",
+        "scene.yaml:2:31: the top radius must be less than twice the bottom radius"},
+       {"objects: [{ovus: {bottom_radius: -1}}]", "scene.yaml:2:34: expected a number of at least 0"},
+       {"objects: [{ovus: {radius: 1}}]", "scene.yaml:2:19: unknown key 'radius' in ovus"}});
+  expect_skipped({{"ovus: {bottom_radius: 0}", "scene.yaml:2:13: warning: the bottom radius is zero"},
+                  {"ovus: {top_radius: 0}", "scene.yaml:2:13: warning: the top radius is zero"}});
 }
 
 TEST(SceneShape, WarningsAreBounded) {

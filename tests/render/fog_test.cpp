@@ -184,6 +184,41 @@ TEST(Fog, IsNotInSolidsThatAreNotHollow) {
   }
 }
 
+// POV-Ray 3.7.0.10 shows these colours of a white floor, seen from 0.05 above, of lamps 5 above it that have
+// `media_attenuation`.
+TEST(Fog, TakesLightFromLampsThatSaySo) {
+  const auto floor = [](const Light& light, const Fog& fog, bool dimmed) {
+    Scene scene = bare_scene(1);
+    scene.camera.projection = Projection::orthographic, scene.camera.height = 1e-3;
+    scene.camera.from = {0, 0.05, 0}, scene.camera.at = {0, 0, 0}, scene.camera.up = {0, 0, 1};
+    Material white;
+    white.ambient = 0, white.diffuse = 1;
+    add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, white));
+    scene.lights = {light}, scene.light_traits.resize(1);
+    scene.light_traits[0].dimmed_by_fog = dimmed;
+    scene.fogs = {fog};
+    return shown(scene);
+  };
+  constexpr double kNear = 1e-3;
+  const PointLight lamp{{0, 5, 0}};
+  Fog fog = fog_of(10, {0, 0, 0});
+  expect_color(floor(lamp, fog, false), {0.9951, 0.9951, 0.9951}, kNear);
+  expect_color(floor(lamp, fog, true), {0.6035, 0.6035, 0.6035}, kNear);
+  // Of a parallel light the way to the plane of its place, here at 45 degrees.
+  DirectionalLight slanting{{0, -1, -1}};
+  slanting.from = Vec3d{0, 5, 0};
+  expect_color(floor(slanting, fog, true), {0.4939, 0.4939, 0.4939}, kNear);
+  slanting.from.reset();
+  expect_color(floor(slanting, fog, true), {0, 0, 0}, kNear);
+  fog.color = {1, 0, 0}, fog.filter = 0.5;
+  expect_color(floor(lamp, fog, true), {0.6084, 0.1509, 0.1509}, kNear);
+  fog.filter = 0, fog.transmit = 0.8;
+  expect_color(floor(lamp, fog, true), {0.8008, 0.7959, 0.7959}, kNear);
+  Fog ground = fog_of(10, {0, 0, 0});
+  ground.altitude = 1, ground.offset = 1;
+  expect_color(floor(lamp, ground, true), {0.7886, 0.7886, 0.7886}, kNear);
+}
+
 TEST(Fog, TakesNoLightFromLamps) {
   Scene scene = wall_scene({0, 0, 0}, fog_of(8, {0, 0, 0}));
   scene.objects.clear();

@@ -89,7 +89,7 @@ std::vector<ExactCase> make_cases() {
   for (const auto& family :
        {quadric_cases(), polynomial_cases(), prism_cases(), sweep_cases(), superquadric_cases(),
         metaball_cases(), blobtree_cases(), function_cases(), fractal_cases(), height_cases(),
-        capsule_cases(), patch_cases(), parametric_cases()})
+        capsule_cases(), patch_cases(), parametric_cases(), ovus_cases()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

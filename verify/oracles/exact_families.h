@@ -55,6 +55,8 @@ std::vector<ExactCase> capsule_cases();
 std::vector<ExactCase> function_cases();
 /// Fractals.
 std::vector<ExactCase> fractal_cases();
+/// Ovi.
+std::vector<ExactCase> ovus_cases();
 /// Height fields, open and solid.
 std::vector<ExactCase> height_cases();
 

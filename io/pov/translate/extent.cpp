@@ -45,14 +45,14 @@ Extent Extent::moved(const Affine& map) const {
 }
 
 bool is_object(std::string_view keyword) {
-  constexpr std::array<std::string_view, 34> kObjects{
+  constexpr std::array<std::string_view, 35> kObjects{
       "sphere", "box",           "cylinder",       "cone",       "plane",
       "disc",   "torus",         "quadric",        "cubic",      "quartic",
       "poly",   "polynomial",    "superellipsoid", "blob",       "lathe",
       "sor",    "prism",         "polygon",        "triangle",   "smooth_triangle",
       "mesh",   "mesh2",         "height_field",   "isosurface", "julia_fractal",
       "text",   "bicubic_patch", "sphere_sweep",   "parametric", "object",
-      "union",  "merge",         "intersection",   "difference"};
+      "union",  "merge",         "intersection",   "difference", "ovus"};
   return std::ranges::find(kObjects, keyword) != kObjects.end();
 }
 
@@ -92,6 +92,16 @@ Extent shape_extent(Context& context, Arguments& a) {
   if (kind == "torus") {
     const double major = a.number("a radius"), minor = a.number("a radius"), r = major + minor;
     return {{-r, -minor, -r}, {r, minor, r}};
+  }
+  if (kind == "ovus") {
+    const double bottom = a.number("a radius"), top = a.number("a radius");
+    const Extent balls = around({0, 0, 0}, bottom).join(around({0, bottom, 0}, top));
+    if (!(0 < top && top < 2 * bottom)) return balls;
+    // The centre of the arc lies at the height y, on the other side of the axis.
+    const double arc = 2 * std::max(bottom, top), low = arc - bottom, high = arc - top;
+    const double y = (low * low - high * high + bottom * bottom) / (2 * bottom);
+    const double wide = arc - std::sqrt(std::max(low * low - y * y, 0.0));
+    return balls.join({{-wide, y, -wide}, {wide, y, wide}});
   }
   if (kind == "superellipsoid") {
     a.pair("two exponents");

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <exception>
 
+#include "io/pov/formula_text.h"
 #include "io/pov/internal_functions.h"
 #include "io/pov/read_pov.h"
-#include "io/pov/translate/pattern.h"
+#include "io/pov/translate/pigment.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett::pov {
@@ -85,9 +86,8 @@ std::string octaves(const char* noise, int count, double scale, double weight,
   return sum;
 }
 
-/// The values of a pattern at p, which are those of the pattern of this name in scene files, where they are
-/// between 0 and 1 everywhere. Empty if it has no formula.
-std::string pattern_formula(std::string_view word, const std::array<std::string, 3>& p) {
+/// The values of a pattern at p where they are between 0 and 1 everywhere. Empty if it has no formula.
+std::string bounded_formula(std::string_view word, const std::array<std::string, 3>& p) {
   const auto at = [&](const char* text) { return fmt::format(fmt::runtime(text), p[0], p[1], p[2]); };
   if (word == "bozo" || word == "bumps" || word == "spotted") return at("(0.5 + 0.5 * noise({}, {}, {}))");
   if (word == "dents") return at("(0.5 + 0.5 * noise({}, {}, {}))^3");
@@ -99,6 +99,109 @@ std::string pattern_formula(std::string_view word, const std::array<std::string,
   if (word == "planar") return at("max(0, 1 - abs({1}))");
   if (word == "boxed") return at("max(0, 1 - max(abs({}), abs({}), abs({})))");
   return "";
+}
+
+/// A pattern at a place before a wave brings its values into one period.
+struct PatternFormula {
+  std::string text;          ///< empty: there is none
+  bool has_period = false;   ///< whether values beyond 0 and 1 occur
+  bool is_triangle = false;  ///< whether its own wave goes back and forth
+};
+
+/// The values of a pattern at p, which are those of the pattern of this name in scene files.
+PatternFormula pattern_formula(const PovPattern& pattern, const std::array<std::string, 3>& p) {
+  const std::string_view word = pattern.word;
+  const auto at = [&](const char* text) { return filled(text, {p[0], p[1], p[2]}); };
+  if (word == "marble") return {p[0], true, true};
+  if (word == "wood") return {at("hypot($0, $1)"), true, true};
+  if (word == "radial") return {at("0.75 + atan2($0, $2) / (2 * pi)"), true};
+  if (word == "onion") return {filled("$0 - floor($0)", {at("sqrt($0^2 + $1^2 + $2^2)")})};
+  if (pattern.is_list) return {number_formula(word, p)};
+  if (word == "gradient") {
+    const Vec3d d = normalize(pattern.direction);
+    const std::string along = filled("$0 * $3 + $1 * $4 + $2 * $5",
+                                     {p[0], p[1], p[2], number_of(d.x), number_of(d.y), number_of(d.z)});
+    return {filled("$0 - max(0, sign($0 - 1)) * floor($0)", {along}), true};
+  }
+  return {bounded_formula(word, p)};
+}
+
+/// What the wave of a pattern makes of its values; the formulas are those of `waved` in render/warp.h.
+std::string waved_formula(const PovPattern& p, const PatternFormula& f) {
+  const bool triangle = p.wave == "triangle" || (p.wave.empty() && f.is_triangle);
+  const bool is_plain = !f.has_period && p.frequency == 1 && p.phase == 0;
+  if (is_plain && (p.wave.empty() || p.wave == "ramp")) return f.text;
+  std::string x = f.text;
+  if (p.frequency != 0) {
+    if (p.frequency != 1 || p.phase != 0)
+      x = filled("$0 * $1 + $2", {x, number_of(p.frequency), number_of(p.phase)});
+    x = filled("$0 - 1.00001 * sign($0) * floor(abs($0) / 1.00001)", {x});
+  }
+  x = filled("min(1, $0 - min(0, floor($0)))", {x});
+  if (triangle) return filled("1 - abs(2 * $0 - 1)", {x});
+  if (p.wave == "sine") return filled("0.5 + 0.5 * sin(2 * pi * $0)", {x});
+  if (p.wave == "scallop") return filled("abs(sin(pi * $0))", {x});
+  if (p.wave == "cubic") return filled("$0^2 * (3 - 2 * $0)", {x});
+  if (p.wave == "poly") return filled("pow($0, $1)", {x, number_of(p.exponent)});
+  return x;
+}
+
+/// What lies between two places of a map or a spline: a polynomial of the part of the way from one to the
+/// other.
+struct Piece {
+  double from, to;
+  std::array<double, 4> c{};
+};
+
+/// The function of `at` that is `first` before all pieces, which follow each other, and constant behind them.
+/// A piece without length is a jump just behind its place.
+std::string pieces_text(const std::string& at, double first, const std::vector<Piece>& pieces) {
+  std::string sum = number_of(first);
+  double reached = first;
+  for (const Piece& piece : pieces) {
+    const auto& c = piece.c;
+    if (c[0] != reached)
+      sum +=
+          fmt::format(" + {} * max(0, sign({} - {}))", number_of(c[0] - reached), at, number_of(piece.from));
+    reached = c[0];
+    if (!(piece.to > piece.from)) continue;
+    reached = c[0] + c[1] + c[2] + c[3];
+    const std::string u = filled("max(0, min(1, ($0 - $1) * $2))",
+                                 {at, number_of(piece.from), number_of(1 / (piece.to - piece.from))});
+    std::string text;
+    for (std::size_t k = 3; k > 0; --k) {
+      if (text.empty() && c[k] == 0) continue;
+      text = text.empty() ? fmt::format("{} * {}", number_of(c[k]), u)
+                          : fmt::format("({} + {}) * {}", number_of(c[k]), text, u);
+    }
+    if (!text.empty()) sum += " + " + text;
+  }
+  return "(" + sum + ")";
+}
+
+/// A component of a spline. Between two points it is a cubic through four of its values.
+std::string spline_text(const Spline& spline, std::size_t component, const std::string& at) {
+  if (spline.points.empty()) throw Unwritable{"a spline without points"};
+  std::vector<Piece> pieces;
+  const auto value = [&](double place) { return evaluate(spline, place)[component]; };
+  for (std::size_t i = 0; i + 1 < spline.points.size(); ++i) {
+    const double from = spline.points[i].at, to = spline.points[i + 1].at, step = (to - from) / 3;
+    const double a = value(from), b = value(from + step), c = value(to - step), d = value(to);
+    Piece piece{from,
+                to,
+                {a, -5.5 * a + 9 * b - 4.5 * c + d, 9 * a - 22.5 * b + 18 * c - 4.5 * d,
+                 4.5 * (d - a) + 13.5 * (b - c)}};
+    // What is rounding of these sums is none.
+    const double size = std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d);
+    for (double& x : piece.c)
+      if (std::abs(x) <= 1e-13 * size) x = 0;
+    // One piece begins where the one before ends.
+    piece.c[0] = pieces.empty()
+                     ? a
+                     : pieces.back().c[0] + pieces.back().c[1] + pieces.back().c[2] + pieces.back().c[3];
+    if (to > from) pieces.push_back(piece);
+  }
+  return pieces_text(at, value(spline.points.front().at), pieces);
 }
 
 class Writer {
@@ -146,7 +249,7 @@ class Writer {
         operands.resize(std::max(operands.size(), node.function->parameters.size()), "0");
         return Writer(*node.function, operands, context_, depth_ + 1, pigment_).text();
       case Op::spline:
-        throw Unwritable{"a spline"};
+        return spline(node, operands);
       case Op::pattern:
         return pattern(node, operands);
       case Op::transform:
@@ -174,6 +277,11 @@ class Writer {
     return "(" + sum + ")";
   }
 
+  static std::string spline(const FunctionNode& node, const std::vector<std::string>& operands) {
+    if (node.spline == nullptr || operands.empty() || node.index > 4) throw Unwritable{"an unknown spline"};
+    return spline_text(*node.spline, node.index, operands[0]);
+  }
+
   std::string pattern(const FunctionNode& node, const std::vector<std::string>& operands) const {
     if (node.block == nullptr || operands.size() < 3) throw Unwritable{"an unknown pattern"};
     if (node.block->keyword != "pattern") return pigment(node, operands);
@@ -182,6 +290,11 @@ class Writer {
     PovPattern p;
     while (!arguments.at_end())
       if (!reader.take(arguments, p)) throw Unwritable{"a pattern with more than expressions have"};
+    return value_of(p, operands);
+  }
+
+  /// The value of a pattern at the place that three operands are.
+  static std::string value_of(const PovPattern& p, const std::vector<std::string>& operands) {
     const std::string name = fmt::format("a pattern '{}'", p.word);
     Affine all;
     for (const auto& modifier : p.modifiers) {
@@ -190,21 +303,47 @@ class Writer {
       all = moves->all * all;
     }
     if (!(p.turbulence == Vec3d{0, 0, 0})) throw Unwritable{name + " with turbulence"};
-    if (!p.wave.empty() || p.frequency != 1 || p.phase != 0) throw Unwritable{name + " with a wave"};
     if (!all.is_invertible()) throw Unwritable{name + " with a transform that has no inverse"};
-    std::string text = pattern_formula(p.word, moved(all.inverse(), operands));
-    if (text.empty()) throw Unwritable{name};
-    return text;
+    const PatternFormula formula = pattern_formula(p, moved(all.inverse(), operands));
+    if (formula.text.empty()) throw Unwritable{name};
+    return waved_formula(p, formula);
   }
 
-  /// A channel of a pigment's colour at the place itself, where that is asked for.
+  /// A channel of a pigment's colour: of the colour at the place itself, where that is asked for.
   std::string pigment(const FunctionNode& node, const std::vector<std::string>& operands) const {
-    const bool is_here = operands[0] == kPlace[0] && operands[1] == kPlace[1] && operands[2] == kPlace[2];
-    if (pigment_ == nullptr || !is_here || node.index > 2 ||
-        (*pigment_ != nullptr && *pigment_ != node.block))
-      throw Unwritable{"a pigment"};
-    *pigment_ = node.block;
-    return kChannels[node.index];
+    if (node.index > 4) throw Unwritable{"an unknown pigment"};
+    if (pigment_ != nullptr) {
+      const bool is_here = operands[0] == kPlace[0] && operands[1] == kPlace[1] && operands[2] == kPlace[2];
+      if (!is_here || node.index > 2 || (*pigment_ != nullptr && *pigment_ != node.block))
+        throw Unwritable{"pigments of several places"};
+      *pigment_ = node.block;
+      return kChannels[node.index];
+    }
+    Pigment p;
+    read_pigment(context_, *node.block, p);
+    return channel(p, node.index, operands);
+  }
+
+  static std::string channel(const Pigment& p, std::uint32_t index,
+                             const std::vector<std::string>& operands) {
+    const auto of = [&](const PigmentEntry& entry) {
+      if (entry.pigment != nullptr) throw Unwritable{"a pigment of pigments"};
+      const PovColor& c = entry.color;
+      return index < 3 ? c.rgb[static_cast<int>(index)] : index == 3 ? c.filter : c.transmit;
+    };
+    if (is_solid(p)) return number_of(of({0, p.solid, nullptr}));
+    if (p.is_average) throw Unwritable{"an average of pigments"};
+    const std::vector<PigmentEntry> entries = entries_of(p);
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i + 1 < entries.size(); ++i) {
+      const double a = of(entries[i]), b = of(entries[i + 1]);
+      // The values of a list are its numbers.
+      if (p.pattern.is_list)
+        pieces.push_back({static_cast<double>(i) + 0.5, static_cast<double>(i) + 0.5, {b}});
+      else
+        pieces.push_back({entries[i].at, entries[i + 1].at, {a, b - a}});
+    }
+    return pieces_text(value_of(p.pattern, operands), of(entries.front()), pieces);
   }
 
   /// The coordinates of the place to which a map takes the place that three operands are.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "io/pov/formula_text.h"
 #include "io/pov/translate/extent.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/inside_text.h"
@@ -52,9 +53,9 @@ constexpr PatternName kNames[] = {
     {"spiral1", "spiral"},
     {"spiral2", "double_spiral"},
     {"spotted", "noise"},
-    {"square", ""},
+    {"square", "function"},
     {"tiling", ""},
-    {"triangular", ""},
+    {"triangular", "function"},
     {"waves", "waves"},
     {"wood", "rings"},
     {"wrinkles", "wrinkles"},
@@ -98,6 +99,18 @@ Node turbulence_node(Tree& tree, const Place& where, const PovPattern& p) {
   return map;
 }
 
+/// The triangles with edges of length 1, one of them from the origin along x: a sheared grid of (floor(a),
+/// floor(b)) whose cells have an upright triangle and one on its tip. Three cells in a row repeat.
+std::string triangle_number(const std::string& x, const std::string& z) {
+  const std::string b = filled("$0 / sqrt(0.75)", {z}), a = filled("$0 - $1 / 2", {x, b});
+  const std::string d = filled("floor($0) - floor($1)", {a, b});
+  const std::string row = filled("$0 - 3 * floor($0 / 3)", {d});
+  const std::string on_tip = filled("max(0, sign($0 - floor($0) + $1 - floor($1) - 1))", {a, b});
+  // 0, 4 and 2; on their tips 3, 5 and 1.
+  const std::string number = filled("$0 * (3 + 2 * $1) + (1 - $0) * (6 - 2 * $1)", {on_tip, row});
+  return filled("$0 - 6 * floor($0 / 6)", {number});
+}
+
 /// Whether a block `object` is a pattern, not an object.
 bool block_holds_object(const Block& block) {
   return std::ranges::any_of(block.elements, [](const Element& e) {
@@ -114,12 +127,27 @@ void PovPattern::move(const Moves& moves) {
   std::get<Moves>(modifiers.back()).add(moves);
 }
 
+std::string number_formula(std::string_view pattern, const std::array<std::string, 3>& p) {
+  if (pattern == "checker")
+    return filled("$0 - 2 * floor($0 / 2)",
+                  {filled("floor($0) + floor($1) + floor($2)", {p[0], p[1], p[2]})});
+  if (pattern == "triangular") return triangle_number(p[0], p[2]);
+  if (pattern != "square") return "";
+  // In columns of even numbers 0 and 1 in turn, in the others 3 and 2.
+  const std::string column = filled("floor($0) - 2 * floor($0 / 2)", {p[0]}),
+                    row = filled("floor($0) - 2 * floor($0 / 2)", {p[2]});
+  return filled("3 * $0 + (1 - 2 * $0) * $1", {column, row});
+}
+
 std::vector<PovColor> default_colors(const PovPattern& pattern) {
   const PovColor red{{1, 0, 0}}, green{{0, 1, 0}}, blue{{0, 0, 1}};
   if (pattern.word == "brick") return {{{0.5, 0.5, 0.5}}, {{0.6, 0.15, 0.15}}};
   if (pattern.word == "object") return {{{0, 0, 0}}, {{1, 1, 1}}};
-  if (pattern.word == "hexagon" || pattern.word == "triangular") return {blue, green, red};
-  if (pattern.word == "cubic") return {red, {{1, 1, 0}}, green, {{0, 1, 1}}, blue, {{1, 0, 1}}};
+  const PovColor yellow{{1, 1, 0}}, cyan{{0, 1, 1}}, magenta{{1, 0, 1}};
+  if (pattern.word == "hexagon") return {blue, green, red};
+  if (pattern.word == "square") return {red, green, blue, yellow};
+  if (pattern.word == "triangular") return {red, green, blue, yellow, cyan, magenta};
+  if (pattern.word == "cubic") return {red, yellow, green, cyan, blue, magenta};
   return {blue, green};
 }
 
@@ -265,6 +293,7 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
   } else if (p.word == "gradient") {
     const Vec3d direction = a.vector("a vector");
     tree.put(p.own, "direction", tree.vector(p.where, direction));
+    p.direction = direction;
     if (!(length(direction) > 0)) p.key = "";
   } else if (p.word == "spiral1" || p.word == "spiral2") {
     put(p, "arms", std::clamp(std::trunc(a.number("the number of arms")), -1000.0, 1000.0));
@@ -274,6 +303,9 @@ void PatternReader::take_own_keys(Arguments& a, PovPattern& p) {
     take_slope(a, p);
   } else if (p.word == "density_file") {
     take_density(a, p);
+  } else if (p.key == "function") {
+    const std::string last = std::to_string(default_colors(p).size() - 1);
+    set(p.own, "f", tree.text(p.where, number_formula(p.word, {"x", "y", "z"}) + " / " + last));
   }
 }
 
@@ -482,13 +514,13 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   p.word = "image_map", p.where = block.where, p.key = "", p.own = tree.map(block.where), p.is_list = false;
   std::string_view onto = "planar";
   std::optional<Place> once;
+  // Numbers of some kinds of files are taken as they are, and so are all in scenes of before 3.7.
+  bool decoded = context_.document.version >= 3.7;
   while (!a.at_end()) {
     const Place where = a.where();
     const Element& element = a.take();
     if (const auto* const path = std::get_if<std::string>(&element.value)) {
       const Node image = tree.map(where, "file", tree.text(where, find_image(context_, where, *path)));
-      // Its numbers are those of the scene's gamma then.
-      if (context_.gamma > 1.6) tree.put(image, "color_space", tree.word(where, "linear"));
       set(p.own, "of", image);
       p.image = image;
       p.key = "projected";
@@ -500,8 +532,15 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
     } else if (word->text == "once") {
       once = where;
+    } else if (word->text == "ppm" || word->text == "pgm" || word->text == "tiff") {
+      decoded = false;
+    } else if (word->text == "gamma") {
+      decoded = !a.is_numbers() || a.number("a gamma") > 1.5;
     }
   }
+  // Where light is computed in the screen's gamma, decoded numbers are those of the file, too.
+  if (p.image != nullptr && (!decoded || context_.gamma > 1.6))
+    tree.put(p.image, "color_space", tree.word(p.where, "linear"));
   p.once = once && onto == "planar";
   if (once && !p.once)
     context_.tell("once", *once, "'once' of an image that is not planar has no meaning here: it repeats");

@@ -1,7 +1,9 @@
 #pragma once
 /// \file Patterns: what pigments, normals and textures have in common. Within io/ only.
 
+#include <array>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -19,7 +21,8 @@ struct PovPattern {
   Node image = nullptr;  ///< of an image, its texture by uv
   bool is_list = false;  ///< it has a list of colours in place of a map
   bool uses_uv = false;
-  bool once = false;  ///< of an image in the unit square of x and y: it is not repeated
+  bool once = false;         ///< of an image in the unit square of x and y: it is not repeated
+  Vec3d direction{0, 1, 0};  ///< of a gradient
 
   /// Transforms, and warps as items of scene files, in the order in which they are applied to the pattern.
   std::vector<std::variant<Moves, Node>> modifiers;
@@ -34,6 +37,10 @@ struct PovPattern {
 
 /// The colours that the pattern has if none are given; `is_list` patterns only.
 std::vector<PovColor> default_colors(const PovPattern& pattern);
+
+/// The number of the colour that a pattern with a list of colours shows at the place p, as an expression.
+/// Empty if it has no formula.
+std::string number_formula(std::string_view pattern, const std::array<std::string, 3>& p);
 
 /// Reads patterns.
 class PatternReader {

@@ -400,6 +400,15 @@ Node only_value(const std::vector<Node>& values) {
   return values.empty() ? nullptr : values[0];
 }
 
+std::vector<PigmentEntry> entries_of(const Pigment& p) {
+  if (!p.pattern.is_list) return p.entries.empty() ? default_map(p.pattern.word) : p.entries;
+  std::vector<PigmentEntry> list = p.entries;
+  const std::vector<PovColor> usual = default_colors(p.pattern);
+  list.resize(std::min(list.size(), usual.size()));
+  for (std::size_t i = list.size(); i < usual.size(); ++i) list.push_back({0, usual[i], nullptr});
+  return list;
+}
+
 bool is_solid(const Pigment& p) { return p.pattern.is_none(); }
 
 PovColor mean_of(const Pigment& p) {
@@ -445,17 +454,13 @@ Node pigment_node(Context& context, const Place& where, const Pigment& p, const 
   if (pattern.key == "projected") return image_node(context, p, part);
   const Node values = tree.list(where);
   if (pattern.is_list) {
-    std::vector<PigmentEntry> list = p.entries;
-    const std::vector<PovColor> usual = default_colors(pattern);
-    list.resize(std::min(list.size(), usual.size()));
-    for (std::size_t i = list.size(); i < usual.size(); ++i) list.push_back({0, usual[i], nullptr});
     std::vector<Node> shown;
-    for (const PigmentEntry& entry : list) shown.push_back(entry_node(context, where, entry, part));
+    for (const PigmentEntry& entry : entries_of(p)) shown.push_back(entry_node(context, where, entry, part));
     if (const Node only = only_value(shown)) return only;
     for (const Node node : shown) Tree::push(values, node);
     return pattern_node(context, pattern, values);
   }
-  const std::vector<PigmentEntry> map = even_map(p.entries.empty() ? default_map(pattern.word) : p.entries);
+  const std::vector<PigmentEntry> map = even_map(entries_of(p));
   std::vector<Node> shown;
   for (const PigmentEntry& entry : map) shown.push_back(entry_node(context, where, entry, part));
   if (const Node only = only_value(shown)) return only;

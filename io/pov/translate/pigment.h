@@ -35,6 +35,10 @@ void read_pigment(Context& context, const Block& block, Pigment& pigment);
 /// Reads what stands in a block `pigment`, or behind the place in an entry of a map.
 void read_pigment(Context& context, Arguments& arguments, Pigment& pigment);
 
+/// What the pattern of a pigment without an image shows: what is given, and what it has without that. Never
+/// empty.
+std::vector<PigmentEntry> entries_of(const Pigment& pigment);
+
 /// The mean colour of the whole pigment, with what passes through.
 PovColor mean_of(const Pigment& pigment);
 /// Whether light passes anywhere.

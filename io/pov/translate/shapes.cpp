@@ -41,6 +41,7 @@ class ShapeMaker {
     if (k == "plane") return plane();
     if (k == "disc") return disc();
     if (k == "torus") return torus();
+    if (k == "ovus") return ovus();
     if (k == "quadric") return quadric();
     if (k == "cubic") return make_polynomial(context_, a_, 3, within_, operand_);
     if (k == "quartic") return make_polynomial(context_, a_, 4, within_, operand_);
@@ -95,9 +96,13 @@ class ShapeMaker {
   }
 
   Shapes sphere() {
+    const Vec3d center = a_.vector("the centre");
+    return ball(center, std::abs(a_.number("the radius")));
+  }
+
+  Shapes ball(const Vec3d& center, double radius) {
     const Node keys = map();
-    tree_.put(keys, "center", vector(a_.vector("the centre")));
-    tree_.put(keys, "radius", number(std::abs(a_.number("the radius"))));
+    tree_.put(keys, "center", vector(center)), tree_.put(keys, "radius", number(radius));
     return one("sphere", keys);
   }
 
@@ -160,6 +165,21 @@ class ShapeMaker {
     Shapes shapes = one("torus", keys);
     stand_up(shapes, where_);
     return shapes;
+  }
+
+  Shapes ovus() {
+    const double bottom = a_.number("the bottom radius"), top = a_.number("the top radius");
+    if (bottom < 0 || top < 0) context_.fail(where_, "the radii of an ovus must not be negative");
+    // One ball holds the other.
+    if (top == 0 || top >= 2 * bottom) {
+      if (top > 0)
+        context_.warn(where_,
+                      "the top radius of this ovus is not less than twice the bottom radius: it is a sphere");
+      return ball({0, top == 0 ? 0 : bottom, 0}, top == 0 ? bottom : top);
+    }
+    const Node keys = map();
+    tree_.put(keys, "bottom_radius", number(bottom)), tree_.put(keys, "top_radius", number(top));
+    return one("ovus", keys);
   }
 
   Shapes quadric() {

@@ -164,8 +164,10 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(root, "film", film);
   const Node integrator = tree.map(s.settings_place);
   tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
+  // The rays of the camera are the first level.
   tree.put(integrator, "depth",
-           tree.number(s.settings_place, std::clamp(std::round(s.max_trace_level), 0.0, 64.0)));
+           tree.number(s.settings_place, std::clamp(std::round(s.max_trace_level) - 1, 0.0, 64.0)));
+  tree.put(integrator, "cutoff", tree.number(s.settings_place, std::clamp(s.adc_bailout, 0.0, 1.0)));
   if (context.samples > 0) tree.put(integrator, "samples", tree.number(top, context.samples));
   tree.put(root, "integrator", integrator);
   tree.put(root, "background", s.sky != nullptr ? s.sky : color_node(tree, s.background_place, s.background));

@@ -209,6 +209,7 @@ struct PovLight {
   Vec3d location{0, 0, 0}, point_at{0, 0, 1};
   PovColor color{{1, 1, 1}};
   bool spot = false, cylinder = false, parallel = false, shadowless = false, circular = false;
+  bool media_attenuation = false, media_interaction = true;
   std::optional<double> radius, falloff;
   double tightness = 0, fade_distance = 0, fade_power = 0;
   std::array<LightPoints, 2> area;
@@ -283,8 +284,11 @@ void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body
     } else {
       const std::string_view word = l.peek_word();
       l.take();
-      if (word == "adaptive" || word == "jitter" || word == "orient" || word == "media_interaction" ||
-          word == "media_attenuation" || word == "area_illumination") {
+      if (word == "media_attenuation") {
+        light.media_attenuation = l.flag();
+      } else if (word == "media_interaction") {
+        light.media_interaction = l.flag();
+      } else if (word == "adaptive" || word == "jitter" || word == "orient" || word == "area_illumination") {
         if (l.is_numbers()) l.take();
       }
     }
@@ -296,6 +300,8 @@ void put_light(Tree& tree, const Place& where, const PovLight& light, Node keys)
   if (light.shadowless)
     // Such a light shows no highlights, either.
     tree.put(keys, "shadows", tree.flag(where, false)), tree.put(keys, "highlights", tree.flag(where, false));
+  if (light.media_attenuation && light.media_interaction)
+    tree.put(keys, "dimmed_by_fog", tree.flag(where, true));
   if (!(light.fade_distance > 0 && light.fade_power > 0)) return;
   const Node fade = tree.map(where);
   tree.put(fade, "distance", tree.number(where, light.fade_distance));
@@ -398,6 +404,8 @@ void read_global_settings(Context& context, const Block& block, Surroundings& s)
       if (!a.at_end()) a.take();
     } else if (a.take_word("max_trace_level")) {
       s.max_trace_level = a.number("a number");
+    } else if (a.take_word("adc_bailout")) {
+      s.adc_bailout = a.number("a number");
     } else if (a.take_word("ambient_light")) {
       s.ambient = a.vector("a colour");
     } else if (const Block* const inner = a.peek_block()) {

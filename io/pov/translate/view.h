@@ -19,7 +19,7 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
 
 /// Settings of the whole scene: the sections `integrator`, `background` and `ambient_light`.
 struct Surroundings {
-  double max_trace_level = 5;
+  double max_trace_level = 5, adc_bailout = 1 / 255.0;
   Vec3d ambient{1, 1, 1};
   Vec3d background{0, 0, 0};
   Node sky = nullptr;       ///< instead, if there is one

@@ -1,0 +1,151 @@
+#include "kernels/exact/piece_march.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace oktett::piece_march_test {
+namespace {
+
+constexpr int kRoom = 24;
+
+/// The product of t - r over roots r, in the mean value form about the middle of the piece.
+template <class D>
+struct Product {
+  std::vector<double> roots;
+  double factor;
+  mutable int evaluations = 0;
+
+  Dual<Interval<D>> value(const Dual<Interval<D>>& t) const {
+    Dual<Interval<D>> p{Interval<D>(D(factor)), Interval<D>(D(0.0))};
+    for (const double r : roots) p = p * (t - Dual<Interval<D>>{Interval<D>(D(r)), Interval<D>(D(0.0))});
+    return p;
+  }
+  Dual<Interval<D>> over(const Interval<D>& t) const {
+    ++evaluations;
+    const Interval<D> m(t.lo + (t.hi - t.lo) * D(0.5));
+    Dual<Interval<D>> f = value({t, Interval<D>(D(1.0))});
+    f.v = intersect(f.v, at(m.lo) + f.d * (t - m));
+    return f;
+  }
+  Interval<D> at(const D& t) const { return value({Interval<D>(t), Interval<D>(D(0.0))}).v; }
+};
+
+struct Found {
+  std::vector<double> t, turn;
+  double up_to;
+  int evaluations;
+};
+
+template <int W, int K = kRoom>
+Found find(const std::vector<double>& roots, double factor, double a, double b, double limit) {
+  using D = Simd<double, W, ScalarIsa>;
+  const Product<D> product{roots, factor};
+  const interval::PieceMarch<K, Product<D>, D> march(product, a, b, limit, b - a);
+  Found found;
+  march.each((b - a) * 0x1p-42,
+             [&](double x, double before) { found.t.push_back(x), found.turn.push_back(-before); });
+  found.up_to = march.up_to(), found.evaluations = product.evaluations;
+  return found;
+}
+
+/// What all numbers of lanes find.
+Found find_alike(const std::vector<double>& roots, double factor = 1, double a = 0, double b = 1,
+                 double limit = 0) {
+  limit = std::max(b, limit);
+  const Found one = find<1>(roots, factor, a, b, limit), four = find<4>(roots, factor, a, b, limit),
+              eight = find<8>(roots, factor, a, b, limit);
+  EXPECT_EQ(one.t, four.t);
+  EXPECT_EQ(one.t, eight.t);
+  EXPECT_EQ(one.turn, eight.turn);
+  EXPECT_EQ(one.up_to, eight.up_to);
+  return eight;
+}
+
+void expect_roots(const Found& found, const std::vector<double>& roots, double first_turn,
+                  double tolerance = 1e-11) {
+  ASSERT_EQ(found.t.size(), roots.size());
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    EXPECT_NEAR(found.t[i], roots[i], tolerance);
+    EXPECT_EQ(found.turn[i], i % 2 == 0 ? first_turn : -first_turn);
+  }
+}
+
+TEST(PieceMarch, FindsKnownRoots) {
+  expect_roots(find_alike({0.3}), {0.3}, 1);
+  expect_roots(find_alike({0.1, 0.5, 0.7, 0.70001, 0.9}), {0.1, 0.5, 0.7, 0.70001, 0.9}, 1);
+  expect_roots(find_alike({0.5, 0.5 + 1e-6}, -1), {0.5, 0.5 + 1e-6}, 1, 1e-9);
+  expect_roots(find_alike({-1, 2}), {}, 1);
+  expect_roots(find_alike({}), {}, 1);
+  expect_roots(find_alike({0.3}, 1, 0.5, 0.2), {}, 1);
+  expect_roots(find_alike({0.3}, 1, 0.2, 0.2), {}, 1);
+}
+
+/// Random roots, far apart or close together, are all found, as far as doubles can resolve them.
+TEST(PieceMarch, FindsRandomRoots) {
+  std::mt19937 random(5);
+  int checked = 0;
+  for (int k = 0; k < 2000; ++k) {
+    std::vector<double> roots;
+    const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
+    for (int n = static_cast<int>(random() % 6); n > 0; --n)
+      roots.push_back(random() % 3 == 0 && !roots.empty() ? roots.back() + 1e-3 * unit() : unit());
+    std::sort(roots.begin(), roots.end());
+    double least = 1;
+    for (std::size_t i = 1; i < roots.size(); ++i) least = std::min(least, roots[i] - roots[i - 1]);
+    if (least < 1e-5 || (!roots.empty() && roots.back() >= 1)) continue;
+    ++checked;
+    expect_roots(find_alike(roots), roots, roots.size() % 2 == 1 ? 1 : -1, 1e-9);
+  }
+  EXPECT_GT(checked, 1500);
+}
+
+/// Touching is no crossing; it costs few pieces although rounding hides the sign.
+TEST(PieceMarch, PassesOverTouching) {
+  const Found one = find_alike({0.3, 0.3});
+  EXPECT_TRUE(one.t.empty());
+  EXPECT_LT(one.evaluations, 1000);
+  EXPECT_TRUE(find_alike({0.3, 0.3, 0.7, 0.7}, -1).t.empty());
+  expect_roots(find_alike({0.3, 0.3, 0.6}), {0.6}, 1);
+  EXPECT_TRUE(find_alike({0.3, 0.3, 0.3, 0.3}).t.empty());
+  expect_roots(find_alike({0.3, 0.3, 0.3}), {0.3}, 1, 1e-4);
+}
+
+/// A ray that lies in the surface all along is given up, and counted.
+TEST(PieceMarch, GivesUpWhereNothingIsTold) {
+  const std::uint64_t before = interval::uncertified_count();
+  const Found zero = find<8>({0.5}, 0, 0, 1, 1);
+  EXPECT_TRUE(zero.t.empty());
+  EXPECT_LE(zero.evaluations * 8, interval::kMaxSteps);
+  EXPECT_EQ(interval::uncertified_count(), before + 1);
+}
+
+/// A crossing at the end of the range is followed beyond the end if that is allowed, and no other.
+TEST(PieceMarch, SettlesTheEnd) {
+  EXPECT_TRUE(find_alike({0.5}, 1, 0, 0.5, 0.5).t.empty());
+  expect_roots(find_alike({0.5}, 1, 0, 0.5, 1), {0.5}, 1);
+  EXPECT_TRUE(find_alike({0.5, 0.75}, 1, 0, 0.25, 1).t.empty());
+  // It begins there: the sign at the beginning cannot be told, so that there is none before.
+  EXPECT_TRUE(find_alike({0.5}, 1, 0.5, 1, 1).t.empty());
+}
+
+/// A march that is resumed where the last one was full finds the same crossings.
+TEST(PieceMarch, ResumesWhereItStopped) {
+  std::vector<double> roots, all;
+  for (int i = 1; i < 12; ++i) roots.push_back(i / 12.0 + 1e-3);
+  for (double a = 0; a < 1;) {
+    const Found part = find<8, 3>(roots, 1, a, 1, 1);
+    EXPECT_LE(part.t.size(), 3u);
+    all.insert(all.end(), part.t.begin(), part.t.end());
+    a = part.up_to;
+  }
+  ASSERT_EQ(all.size(), roots.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], roots[i], 1e-11);
+}
+
+}  // namespace
+}  // namespace oktett::piece_march_test
