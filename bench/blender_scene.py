@@ -3,7 +3,8 @@
 Writes one picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the
 seconds are those of the whole render call, the building of the scene included.
 
-Environment: OKTETT_PEER_THREADS is the number of threads (2). OKTETT_PEER_PART="X0 Y0 X1 Y1" renders only the pixels
+Environment: OKTETT_PEER_THREADS is the number of threads (2). OKTETT_PEER_ADAPTIVE is the noise at which pixels get no more
+samples; without it all get the same number. OKTETT_PEER_PART="X0 Y0 X1 Y1" renders only the pixels
 from column X0 to before X1 and from row Y0 to before Y1; row 0 is the top.
 """
 import json
@@ -125,7 +126,10 @@ def configure(scene, description, seed):
     cycles.device = "CPU"
     cycles.seed = seed
     cycles.use_denoising = False
-    cycles.use_adaptive_sampling = False
+    adaptive = os.environ.get("OKTETT_PEER_ADAPTIVE")
+    cycles.use_adaptive_sampling = adaptive is not None
+    if adaptive:
+        cycles.adaptive_threshold = float(adaptive)
     cycles.pixel_filter_type = "BOX"
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.light_sampling_threshold = 0

@@ -43,6 +43,8 @@ struct Options {
   std::uint32_t width = 320, height = 180, samples = 64, long_samples = 1024;
   int threads = 2, runs = 3;
   bool embree = true, cycles = true;
+  /// Of timed pictures of Cycles: the noise at which pixels get no more samples; 0: all get as many.
+  double adaptive = 0;
   std::string json, keep, mesh = "/usr/share/glmark2/models/bunny.obj";
   std::vector<std::string> scenes;
 };
@@ -163,9 +165,10 @@ std::string cycles_command(const fs::path& dir, std::uint32_t seed, const Option
 }
 
 /// Renders with Cycles. Returns the seconds of `samples` samples, without those of loading and building.
-double run_cycles(const fs::path& dir, std::uint32_t samples, std::uint32_t seed, const Options& o) {
+double run_cycles(const fs::path& dir, std::uint32_t samples, std::uint32_t seed, const Options& o,
+                  const std::string& variables = {}) {
   const std::string log = (dir / "cycles.log").string();
-  run_command(fmt::format("{} {} {}", cycles_command(dir, seed, o), kFewSamples, samples), log);
+  run_command(fmt::format("{} {} {}", cycles_command(dir, seed, o, variables), kFewSamples, samples), log);
   const double few = number_after(log, fmt::format("cycles {} ", kFewSamples));
   const double all = number_after(log, fmt::format("cycles {} ", samples));
   return (all - few) * samples / (samples - kFewSamples);
@@ -199,12 +202,13 @@ CyclesRow against_cycles(const PathScene& scene, const fs::path& dir, const Opti
                 (dir / "cycles.log").string());
     return block_mean(picture(samples), o.width, b.x, b.y);
   });
+  const std::string adaptive = o.adaptive > 0 ? fmt::format("OKTETT_PEER_ADAPTIVE={}", o.adaptive) : "";
   std::vector<double> ours, theirs;
   for (int run = 0; run < o.runs; ++run) {
     const Traced traced = trace(here, textures, o.samples, 0, o);
     ours.push_back(traced.seconds);
     row.our_error = relative_error(pixels_of(traced.picture), our_long, o);
-    theirs.push_back(run_cycles(dir, o.samples, 0, o));
+    theirs.push_back(run_cycles(dir, o.samples, 0, o, adaptive));
   }
   row.their_error = relative_error(picture(o.samples), their_long, o);
   row.ours = quartiles(ours), row.theirs = quartiles(theirs);
@@ -264,6 +268,9 @@ Options parse(int argc, char** argv) {
        [&](Text v) { o.samples = number(v, 4u, 65536u); }},
       {"--long-spp", "N", "samples of the references; 1024",
        [&](Text v) { o.long_samples = number(v, 4u, 65536u); }},
+      {"--adaptive", "NOISE",
+       "at which Cycles gives a timed pixel no more samples, as 0.01; none: all get as many",
+       [&](Text v) { o.adaptive = number(v, 0.0, 1.0); }},
       {"--threads", "N", "2", [&](Text v) { o.threads = number(v, 1, 1000); }},
       {"--runs", "N", "rounds in which all trace in turn; 3", [&](Text v) { o.runs = number(v, 1, 1000); }},
       {"--mesh", "OBJ", "the model; glmark2's bunny", [&](Text v) { o.mesh = v; }},
