@@ -703,10 +703,10 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
   const std::string map =
       " color_map { [0 rgb <1, 0, 0.5>] [0.25 rgbt <0, 1, 0.25, 0.5>] [0.25 rgbf <0.5, 0, 0, 1>] "
       "[0.8 rgb 1] [1 rgb <0.25, 0.5, 0.75>] } ";
-  struct Case {
+  struct Asked {
     std::string declared, call;
   };
-  std::vector<Case> cases;
+  std::vector<Asked> cases;
   for (const char* kind : {"linear", "quadratic", "cubic", "natural"})
     for (const char* component : {"x", "y", "z"})
       cases.push_back({std::string("spline { ") + kind + "_spline" + points + "}",
@@ -736,7 +736,7 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
       for (std::size_t at; (at = call.find(name)) != std::string::npos;) call.replace(at, 1, value);
     return call;
   };
-  for (const Case& c : cases) {
+  for (const Asked& c : cases) {
     text += "#declare F = function { " + c.declared + " }\nisosurface { function { " +
             filled(c.call, "x", "y", "z") + " + x * 1e-9 } contained_by { box { -9, 9 } } }\n";
     for (const Vec3d& p : places)

@@ -189,7 +189,7 @@ TEST(Ovus, AxesAreMet) {
 // Bounds in the world touch the surface on all sides.
 TEST(Ovus, BoundsAreTight) {
   CaseRandom random(6);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 10; ++i) {
     const OvusShape s = draw(random);
     const Affine m = Affine::translation(random.vector()) * Affine::rotation(random.vector() * 180.0) *
                      Affine::scaling({1, 0.3 + random.unit(), 2});
@@ -199,10 +199,10 @@ TEST(Ovus, BoundsAreTight) {
     const Profile profile(s);
     const double size = s.bottom_radius + s.top_radius;
     Vec3d lo{1e9, 1e9, 1e9}, hi = -lo;
-    for (int j = 0; j <= 400; ++j)
-      for (int k = 0; k < 400; ++k) {
+    for (int j = 0; j <= 200; ++j)
+      for (int k = 0; k < 200; ++k) {
         const Vec3d p =
-            m.point(point(profile, std::numbers::pi_v<Real> * j / 400, 2 * std::numbers::pi * k / 400.0));
+            m.point(point(profile, std::numbers::pi_v<Real> * j / 200, 2 * std::numbers::pi * k / 200.0));
         lo = min(lo, p), hi = max(hi, p);
       }
     for (int k = 0; k < 3; ++k) {
