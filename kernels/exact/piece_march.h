@@ -134,13 +134,15 @@ class PieceMarch {
         const Interval<D> f = field_.at(D::load(x + first));
         certain_sign(f).store(sign + first), middle(f).store(value + first);
       }
+      // The signs at the ends are known, though what is asked there may not tell them.
       int k = 0;
-      while (k < kPieces && sign[k] == found.before) ++k;
-      if (k < kPieces && sign[k] == 0) return x[k];
-      if (k > 0) l = x[k - 1], at_l = value[k - 1];
-      if (k < kPieces) r = x[k], at_r = value[k];
+      while (k < kPieces && (x[k] <= l || (x[k] < r && sign[k] == found.before))) ++k;
+      const bool within = k < kPieces && x[k] < r;
+      if (within && sign[k] == 0) return x[k];
+      if (k > 0 && x[k - 1] > l) l = x[k - 1], at_l = value[k - 1];
+      if (within) r = x[k], at_r = value[k];
       if (!(r - l < width)) break;
-      part = std::max((r - l) / width, 0x1p-12);
+      part = std::clamp((r - l) / width, 0x1p-12, 0x1p-3);
     }
     return l + (r - l) * 0.5;
   }

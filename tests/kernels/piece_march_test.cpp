@@ -133,6 +133,48 @@ TEST(PieceMarch, SettlesTheEnd) {
   EXPECT_TRUE(find_alike({0.5}, 1, 0.5, 1, 1).t.empty());
 }
 
+/// With one zero, on whose sides the slope differs, and steps beyond which the values are those of other
+/// slopes: as lower bounds of a function that are not all as good.
+template <class D>
+struct Stepped {
+  double zero, step, slopes[4];
+
+  D value(const D& t) const {
+    const D way = t - D(zero);
+    const D before = select(way < D(-step), D(slopes[0]), D(slopes[1]));
+    const D behind = select(way < D(step), D(slopes[2]), D(slopes[3]));
+    return way * select(way < D(0.0), before, behind);
+  }
+  Interval<D> at(const D& t) const {
+    const D f = value(t), error = abs(f) * D(0x1p-50) + D(1e-300);
+    return {f - error, f + error};
+  }
+  /// The sign of its values is that of the way to the zero.
+  Dual<Interval<D>> over(const Interval<D>& t) const {
+    const D lo = t.lo - D(zero), hi = t.hi - D(zero), least(1e-9), most(1e9);
+    return {{min(lo * least, lo * most), max(hi * least, hi * most)}, {least, most}};
+  }
+};
+
+/// Where the chord is a poor guide.
+TEST(PieceMarch, FindsZerosWhereValuesStep) {
+  using D = Simd<double, 4, ScalarIsa>;
+  std::mt19937 random(7);
+  const auto power = [&] { return std::exp2(random() % 21 - 10.0); };
+  for (int k = 0; k < 5000; ++k) {
+    const Stepped<D> stepped{
+        (random() + 0.5) / 4294967296.0, power() * 0.01, {power(), power(), power(), power()}};
+    const interval::PieceMarch<1, Stepped<D>, D> march(stepped, 0, 1, 1, 1);
+    int found = 0;
+    march.each(0x1p-42, [&](double x, double before) {
+      ++found;
+      EXPECT_EQ(before, -1);
+      EXPECT_NEAR(x, stepped.zero, 1e-11);
+    });
+    EXPECT_EQ(found, 1);
+  }
+}
+
 /// A march that is resumed where the last one was full finds the same crossings.
 TEST(PieceMarch, ResumesWhereItStopped) {
   std::vector<double> roots, all;
