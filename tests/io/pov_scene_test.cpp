@@ -415,8 +415,8 @@ TEST(PovScene, FunctionsOfPigments) {
 TEST(PovScene, FunctionsOfPigmentsThatAreNotRead) {
   const PovFiles files;
   const std::string scene =
-      "#version 3.7;\n#declare S = function { spline { linear_spline 0, <0, 0, 0> 1, <1, 1, 1> } }\n"
-      "#declare F = function { pigment { function { S(x).y } } }\n"
+      "#version 3.7;\n#declare S = function { pattern { agate } }\n"
+      "#declare F = function { pigment { function { S(x,y,z) } } }\n"
       "sphere { 0, 1 pigment { function { F(x,y,z).x } } }";
   EXPECT_EQ(files.error(scene), "no error");
   EXPECT_EQ(files.section(scene, "materials"),

@@ -191,9 +191,7 @@ TEST(Fog, TakesLightFromLampsThatSaySo) {
     Scene scene = bare_scene(1);
     scene.camera.projection = Projection::orthographic, scene.camera.height = 1e-3;
     scene.camera.from = {0, 0.05, 0}, scene.camera.at = {0, 0, 0}, scene.camera.up = {0, 0, 1};
-    Material white;
-    white.ambient = 0, white.diffuse = 1;
-    add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, white));
+    add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, diffuse({1, 1, 1})));
     scene.lights = {light}, scene.light_traits.resize(1);
     scene.light_traits[0].dimmed_by_fog = dimmed;
     scene.fogs = {fog};

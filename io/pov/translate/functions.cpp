@@ -195,6 +195,7 @@ std::string spline_text(const Spline& spline, std::size_t component, const std::
     const double size = std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d);
     for (double& x : piece.c)
       if (std::abs(x) <= 1e-13 * size) x = 0;
+    if (piece.c[2] == 0 && piece.c[3] == 0) piece.c[1] = d - a;
     // One piece begins where the one before ends.
     piece.c[0] = pieces.empty()
                      ? a
