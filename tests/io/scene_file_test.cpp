@@ -45,7 +45,10 @@ TEST(SceneFile, ReadsSettings) {
   EXPECT_EQ(scene.camera, (Camera{Projection::orthographic, {0, 1, 5}, {1, 0, 0}, {0, 0, 1}, 35, 3}));
   EXPECT_TRUE(scene.camera_given);
   EXPECT_EQ(scene.film, (Film{320, 200, {0.25, 0.75, 0, 0.5}}));
-  EXPECT_EQ(scene.integrator, (IntegratorSettings{IntegratorKind::ao, 16, 0, 4294967295u, 1.5}));
+  EXPECT_EQ(
+      scene.integrator,
+      (IntegratorSettings{
+          .kind = IntegratorKind::ao, .samples = 16, .depth = 0, .seed = 4294967295u, .ao_radius = 1.5}));
   EXPECT_EQ(scene.background, (Color{0.1f, 0.2f, 0.3f}));
   EXPECT_EQ(scene.ambient_light, (Color{1, 1, 1}));
 }

@@ -101,7 +101,7 @@ void AlongRay::search(int first, int last, Sample& known, std::vector<long doubl
   if (const long double t = between(t0, f0, t1, f1); ends(t) < 0) found.push_back(t);
 }
 
-/// Where f changes its sign between t0 and t1, where it is f0 and f1, by ITP (Oliveira and Takahashi 2020):
+/// Where f changes its sign between t0 and t1, where it is f0 and f1, by ITP (Oliveira 2020):
 /// secants that are drawn towards the middle, at most one step more than bisection.
 long double AlongRay::between(long double t0, long double f0, long double t1, long double f1) const {
   const bool negative = f0 < 0;

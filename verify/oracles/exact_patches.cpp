@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <memory>
 
@@ -64,16 +63,18 @@ bool look_along(const PowerPatch<R>& patch, const Vec3<R>& way, R& u, R& v, R& d
   return distance > 0 && off < R(1e-12);
 }
 
-/// Slices of balls that hold the parts of patches, in balls about whole patches.
+/// Slices of balls that hold patches, strips of them, and parts of strips.
 class PatchSlices {
  public:
   explicit PatchSlices(const std::vector<BezierPatchPoints>& patches) {
     for (const BezierPatchPoints& patch : patches) {
-      Group group{slice_about(patch), {}};
-      for (int j = 0; j < kSide; ++j)
-        for (int i = 0; i < kSide; ++i)
-          group.parts[j * kSide + i] = slice_about(turned(part(turned(part(patch, i)), j)));
-      groups_.push_back(group);
+      Group& group = groups_.emplace_back();
+      group.all = slice_about(patch);
+      for (int i = 0; i < kSide; ++i) {
+        const BezierPatchPoints along = part(patch, i);
+        group.strips[i].all = slice_about(along);
+        for (int j = 0; j < kSide; ++j) group.strips[i].parts[j] = slice_about(part(turned(along), j));
+      }
     }
   }
   /// Whether part of a patch may be within `room` of p.
@@ -83,9 +84,11 @@ class PatchSlices {
       return dot(d, d) <= (slice.radius + room) * (slice.radius + room) &&
              std::abs(dot(d, slice.normal)) <= slice.thick + room;
     };
-    for (const Group& group : groups_)
-      if (is_near(group.all) && std::any_of(std::begin(group.parts), std::end(group.parts), is_near))
-        return true;
+    for (const Group& group : groups_) {
+      if (!is_near(group.all)) continue;
+      for (const Strip& strip : group.strips)
+        if (is_near(strip.all) && std::ranges::any_of(strip.parts, is_near)) return true;
+    }
     return false;
   }
 
@@ -96,8 +99,12 @@ class PatchSlices {
     Vec3d center, normal;
     double radius = 0, thick = 0;
   };
+  struct Strip {
+    Slice all, parts[kSide];
+  };
   struct Group {
-    Slice all, parts[kSide * kSide];
+    Slice all;
+    Strip strips[kSide];
   };
 
   /// A patch lies between its control points.
@@ -119,8 +126,8 @@ class PatchSlices {
     for (int k = 0; k < 16; ++k) other.p[k] = patch.p[k % 4 * 4 + k / 4];
     return other;
   }
-  /// Strip number i along u: its control points are values of the blossom, k times at `to` and else at
-  /// `from`.
+  /// Number i of the strips along u. Its control points are values of the blossom, k times at `to` and else
+  /// at `from`.
   static BezierPatchPoints part(const BezierPatchPoints& patch, int i) {
     const double from = double(i) / kSide, to = double(i + 1) / kSide;
     BezierPatchPoints strip;

@@ -222,9 +222,10 @@ void for_places(const Real (&p)[4], Real at, F&& f) {
     for (int k = 0; k < 100; ++k) {
       const Real y = bezier(p, u) - at, w = 1 - u;
       ((y < 0) == rises ? lo : hi) = u;
+      constexpr Real kEnough = std::numeric_limits<Real>::epsilon();
       Real next = u - y / (3 * (d0 * w * w + 2 * d1 * w * u + d2 * u * u));
-      if (!(next > lo && next < hi)) next = (lo + hi) / 2;
-      if (std::abs(next - u) < std::numeric_limits<Real>::epsilon()) break;
+      if (!(std::abs(next - u) < kEnough) && !(next > lo && next < hi)) next = (lo + hi) / 2;
+      if (std::abs(next - u) < kEnough) break;
       u = next;
     }
     f(u);

@@ -42,9 +42,10 @@ struct Powers {
         for (int k = 0; k < 100; ++k) {
           const R value = at(s) - y;
           ((value < 0) == below ? a : b) = s;
+          constexpr R kEnough = std::numeric_limits<R>::epsilon();
           R next = s - value / slope(s);
-          if (!(next > a && next < b)) next = (a + b) / 2;
-          if (std::abs(next - s) < std::numeric_limits<R>::epsilon()) break;
+          if (!(std::abs(next - s) < kEnough) && !(next > a && next < b)) next = (a + b) / 2;
+          if (std::abs(next - s) < kEnough) break;
           s = next;
         }
         f(s);

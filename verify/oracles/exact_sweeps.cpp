@@ -118,30 +118,28 @@ struct Sweep {
     bend.push_back(thinnest > widening / kParts ? std::max(bend_at(0), bend_at(1)) : HUGE_VAL);
   }
 
-  /// Whether the distance is surely above `room`, surely below -`room`, or neither.
-  enum class Side { outside, inside, unclear };
-  Side side_of(const Vec3d& q, double room) const {
-    Side all = Side::outside;
-    for (std::size_t k = 0; k < rough.size(); ++k) {
-      if (length(q - around[k].center) - around[k].radius > room) continue;
-      const Side side = side_of(k, q, room, 0.5, 0.5, 8);
-      if (side == Side::inside) return side;
-      if (side == Side::unclear) all = side;
-    }
-    return all;
+  /// Whether the distance is surely above `room` or surely below -`room`.
+  bool is_far_from_surface(const Vec3d& q, double room) const {
+    bool outside = true;
+    for (std::size_t k = 0; k < rough.size(); ++k)
+      if (length(q - around[k].center) - around[k].radius <= room &&
+          is_inside(k, q, room, 0.5, 0.5, 8, outside))
+        return true;
+    return outside;
   }
-  /// That of the part of piece k up to `half` before and after `s`, by halving it up to so many times.
-  Side side_of(std::size_t k, const Vec3d& q, double room, double s, double half, int times) const {
+  /// Whether it is surely below -`room`, by the part of piece k up to `half` before and after `s`, which is
+  /// halved up to so many times. If not, and if it is not surely above `room` there, `outside` becomes false.
+  bool is_inside(std::size_t k, const Vec3d& q, double room, double s, double half, int times,
+                 bool& outside) const {
     const double away = rough[k].away(q, s);
-    if (away < -room) return Side::inside;
-    const double fall =
-        std::min(speed[k] * half, std::abs(rough[k].away_slope(q, s)) * half + bend[k] * half * half / 2);
-    if (away - fall > room) return Side::outside;
-    if (times == 0) return Side::unclear;
-    const Side before = side_of(k, q, room, s - half / 2, half / 2, times - 1);
-    if (before == Side::inside) return before;
-    const Side after = side_of(k, q, room, s + half / 2, half / 2, times - 1);
-    return after == Side::outside ? before : after;
+    if (away < -room) return true;
+    const double slope = std::abs(rough[k].away_slope(q, s));
+    const double least = away - std::min(speed[k], slope + bend[k] * half / 2) * half;
+    if (least > room) return false;
+    if (away <= room || times == 0) outside = false;
+    if (times == 0 || (!outside && least >= -room)) return false;
+    return is_inside(k, q, room, s - half / 2, half / 2, times - 1, outside) ||
+           is_inside(k, q, room, s + half / 2, half / 2, times - 1, outside);
   }
 
   Real distance(const Vec3l& p) const {
@@ -209,7 +207,7 @@ ExactOracle oracle_of(const SphereSweepShape& s) {
   }
   // The distance changes no faster than the place.
   o.clear = [sweep](const Vec3d& a, const Vec3d& b) {
-    return sweep.side_of((a + b) * 0.5, 0.5 * length(b - a) + 1e-12) != Sweep::Side::unclear;
+    return sweep.is_far_from_surface((a + b) * 0.5, 0.5 * length(b - a) + 1e-12);
   };
   o.f = [sweep](const Vec3l& p) { return sweep.distance(p); };
   return o;
