@@ -31,9 +31,9 @@ struct LightSource {
   bool from_place = false;  ///< of a directional light: `from` counts, and `beam`
   Vec3d from = {};
   LightBeam beam = {};
-  double tightness = 0;    ///< of a spot
-  bool shadows = true;     ///< things are in its way
-  bool highlights = true;  ///< it shows Phong's highlights
+  double tightness = 0;        ///< of a spot
+  bool shadows = true;         ///< things are in its way
+  bool highlights = true;      ///< it shows Phong's highlights
   bool dimmed_by_fog = false;  ///< fog on its way takes light
 };
 

@@ -11,8 +11,8 @@ namespace oktett {
 struct OvusShape {
   double bottom_radius = 1, top_radius = 0.6;
 
-  static constexpr ShapeInfo kShapeInfo{
-      "ovus", "an egg about the y axis: two balls, and an arc turned around both"};
+  static constexpr ShapeInfo kShapeInfo{"ovus",
+                                        "an egg about the y axis: two balls, and an arc turned around both"};
   void describe(auto& p) {
     p.field("bottom_radius", bottom_radius, kLength, "radius of the ball about the origin");
     p.field("top_radius", top_radius, kLength,

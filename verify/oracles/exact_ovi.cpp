@@ -20,12 +20,14 @@ Real turn(const OnHalfPlane& a, const OnHalfPlane& b) { return a.rho * b.y - a.y
 
 /// The circles of the profile.
 struct OvusProfile {
-  Real bottom, top, arc;      ///< radii
-  OnHalfPlane above, center;  ///< centres of the top ball and of the arc; that of the bottom ball is the origin
+  Real bottom, top, arc;  ///< radii
+  /// The centres of the top ball and of the arc. That of the bottom ball is the origin.
+  OnHalfPlane above, center;
 
   explicit OvusProfile(const OvusShape& s) : bottom(s.bottom_radius), top(s.top_radius) {
     arc = 2 * std::max(bottom, top), above = {0, bottom};
-    // A circle that lies in another one and touches it has its centre nearer to that of the other by its radius.
+    // A circle that lies in another one and touches it has its centre nearer to that of the other by its
+    // radius.
     const Real low = arc - bottom, high = arc - top;
     const Real y = (low * low - high * high + bottom * bottom) / (2 * bottom);
     center = {-std::sqrt(low * low - y * y), y};
@@ -51,9 +53,7 @@ ExactOracle ovus(CaseRandom& random) {
   if (kind > 0.9) ratio = 1;
   s.top_radius = s.bottom_radius * ratio;
   const OvusProfile profile(s);
-  const auto f = [profile](const Vec3l& p) {
-    return profile.away({std::sqrt(p.x * p.x + p.z * p.z), p.y});
-  };
+  const auto f = [profile](const Vec3l& p) { return profile.away({std::sqrt(p.x * p.x + p.z * p.z), p.y}); };
   const double wide = static_cast<double>(profile.arc + profile.center.rho);
   return {{s}, f, {-wide, -s.bottom_radius, -wide}, {wide, s.bottom_radius + s.top_radius, wide}};
 }
