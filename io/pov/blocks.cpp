@@ -144,6 +144,14 @@ void Interpreter::parse_element(std::vector<Element>& elements, std::uint32_t& d
   }
   if (token.kind == Token::Kind::word && token.keyword() != kNoKeyword) {
     take();
+    // Of a gamma `srgb` is the kind, else it begins a colour.
+    if (token.keyword() == "srgb"_kw && !elements.empty()) {
+      const auto* const before = std::get_if<Word>(&elements.back().value);
+      if (before != nullptr && (before->text == "gamma" || before->text == "assumed_gamma")) {
+        add(elements, where, Word{kKeywords[token.keyword()]});
+        return;
+      }
+    }
     // The names of functions are words too: `julia_fractal { ... sqr }`.
     const bool is_call = find_numeric(kKeywords[token.keyword()]) == nullptr || next_is('(');
     if (is_call && starts_value(token)) {

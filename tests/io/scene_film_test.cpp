@@ -62,7 +62,7 @@ TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
   EXPECT_EQ(warnings("kind: ao, depth: 3"),
             "scene.yaml:2:31: warning: 'depth'" + no_effect +
                 "it is for 'whitted' and 'path', but the integrator is 'ao'\n");
-  EXPECT_EQ(warnings("kind: path, cutoff: 0.01"), "scene.yaml:2:35: warning: 'cutoff'" + no_effect +
+  EXPECT_EQ(warnings("kind: path, cutoff: 0.01"), "scene.yaml:2:34: warning: 'cutoff'" + no_effect +
                                                       "it is for 'whitted', but the integrator is 'path'\n");
   EXPECT_EQ(warnings("ao_radius: 1"), "scene.yaml:2:25: warning: 'ao_radius'" + no_effect +
                                           "it is for 'ao', but the integrator is 'whitted'\n");
