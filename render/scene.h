@@ -296,9 +296,6 @@ struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
   std::uint32_t samples = 4;  ///< per pixel, in kPixelSamples
   std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, in kDepths
-  /// Mirrored and refracted rays that change the picture by less are not traced in Whitted's model, [0, 1]:
-  /// the adaptive depth of R. A. Hall, D. P. Greenberg: A Testbed for Realistic Image Synthesis, 1983.
-  double cutoff = 1 / 4096.0;
   std::uint32_t seed = 0;
   double ao_radius =
       0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
@@ -314,6 +311,9 @@ struct IntegratorSettings {
   /// Hits for which some of these points are hidden and others are not ask this many times as many: 1, 2, 4,
   /// 8 or 16.
   std::uint32_t penumbra_factor = 4;
+  /// Mirrored and refracted rays that change the picture by less are not traced in Whitted's model, [0, 1]:
+  /// adaptive depth control (Hall 1983).
+  double cutoff = 1 / 4096.0;
   bool operator==(const IntegratorSettings&) const = default;
 
   void describe(auto& p) {

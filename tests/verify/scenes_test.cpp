@@ -72,7 +72,7 @@ TEST(Scenes, SturmChainsAreAsRightAsOtherFinders) {
 TEST(Scenes, RoundedRaysMeetSurfacesElsewhere) {
   Scene scene;
   Object& object = scene.objects.emplace_back();
-  object.name = "sphere.17689290578887740188";
+  object.name = "sphere.8657362093165023979";
   object.shape = known_shape(object.name)->shape;
   const double rows[] = {-995134.969146509,   -77807.16055627544, 1089209.4579791063,  2198889.232767953,
                          818890.1892910454,   329657.5160203874,  1287839.0169276358,  273252.36372209055,
