@@ -1,9 +1,9 @@
 #pragma once
 /// \file Crossings of a function along one ray, isolated as in march.h, with pieces of the ray in lanes.
 ///
-/// For functions that take long and rays that rarely have company, as within glass. A piece that tells
-/// nothing is divided into eight, whatever the number of lanes, so that each instruction set finds the same
-/// bits. The function is bounded, and over(t) as narrow as the mean value form.
+/// A piece that tells nothing is divided into eight, whatever the number of lanes, so that each instruction
+/// set finds the same bits, and a ray that comes alone fills the lanes. The function is bounded, and over(t)
+/// as narrow as the mean value form.
 
 #include <algorithm>
 
@@ -111,9 +111,9 @@ class PieceMarch {
     return answer;
   }
 
-  /// By ever shorter brackets around the zero of the chord, whose error falls with the square of their
-  /// length: eight places at once, at distances that grow by the factor by which the last bracket was
-  /// shorter.
+  /// The crossing in a bracket, which becomes shorter until it is below `tolerance`: eight places are asked
+  /// at once, four on each side of the zero of the chord. The farthest is a quarter of the bracket away, each
+  /// other one nearer by the factor by which the bracket was shortened last.
   OKTETT_NOINLINE double refine(const Found& found, double tolerance) const {
     double l = found.l, r = found.r, at_l = 0, at_r = 0, part = 0x1p-4;
     for (int round = 0; round < kMaxRounds; ++round) {
@@ -154,10 +154,10 @@ class PieceMarch {
   }
 
   const Field& field_;
-  double least_;
-  double begin_, sign_ = 0,
-                 last_;  ///< where the march begins; the last certain sign, the last place that has it
-  double end_;           ///< all before it is told or a gap
+  double least_;            ///< pieces shorter than this are not divided
+  double begin_;            ///< where the march begins
+  double sign_ = 0, last_;  ///< the last certain sign, and the last place that has it
+  double end_;              ///< all before it is told or a gap
   bool beyond_ = false, done_ = false;
   int divided_ = 0, count_ = 0;
   Found found_[K];
