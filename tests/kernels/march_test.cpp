@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/random_roots.h"
+
 namespace oktett::march_test {
 namespace {
 
@@ -91,14 +93,8 @@ TEST(March, FindsRandomRoots) {
   std::mt19937 random(3);
   int checked = 0;
   for (int k = 0; k < 2000; ++k) {
-    std::vector<double> roots;
-    const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
-    for (int n = static_cast<int>(random() % 6); n > 0; --n)
-      roots.push_back(random() % 3 == 0 && !roots.empty() ? roots.back() + 1e-3 * unit() : unit());
-    std::sort(roots.begin(), roots.end());
-    double least = 1;
-    for (std::size_t i = 1; i < roots.size(); ++i) least = std::min(least, roots[i] - roots[i - 1]);
-    if (least < 1e-5) continue;
+    const std::vector<double> roots = test::random_roots(random);
+    if (test::least_gap(roots) < 1e-5) continue;
     ++checked;
     expect_roots(find(product(roots), 0, 1), roots, 1e-9);
   }
