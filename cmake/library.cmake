@@ -13,15 +13,19 @@ list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/")
 file(GLOB_RECURSE OKTETT_IO_SOURCES CONFIGURE_DEPENDS io/*.cpp)
 # These belong to libraries of their own: cmake/io_libraries.cmake.
 list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/(image/oiio|volume/openvdb|threemf/lib3mf|font/freetype)/")
+# These include what no others do: cmake/gltf.cmake.
+file(GLOB OKTETT_GLTF_SOURCES CONFIGURE_DEPENDS io/gltf/*.cpp)
+list(REMOVE_ITEM OKTETT_IO_SOURCES ${OKTETT_GLTF_SOURCES})
 
 # The static library, too, may become part of a shared one, such as the Python module. Its functions are never replaced by
 # others of the same name, so they may be inlined as in a program.
 set(OKTETT_PIC_OPTIONS -fno-semantic-interposition)
 # The objects of io/ are compiled apart from the others, so that who uses nothing of io/ links nothing that it needs.
 add_library(oktett_io OBJECT ${OKTETT_IO_SOURCES})
-add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES} $<TARGET_OBJECTS:oktett_io>)
+add_library(oktett_gltf OBJECT ${OKTETT_GLTF_SOURCES})
+add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES} $<TARGET_OBJECTS:oktett_io> $<TARGET_OBJECTS:oktett_gltf>)
 add_library(oktett::oktett ALIAS oktett)
-foreach(target oktett oktett_io)
+foreach(target oktett oktett_io oktett_gltf)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${OKTETT_PIC_OPTIONS})
   target_compile_definitions(${target} PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
@@ -37,9 +41,10 @@ set_target_properties(oktett PROPERTIES
 include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 
-file(GLOB OKTETT_GLTF_SOURCES CONFIGURE_DEPENDS io/gltf/*.cpp)
-set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS ${OKTETT_GLTF_DEFINITIONS})
-set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_OPTIONS ${OKTETT_GLTF_INCLUDES})
+target_compile_definitions(oktett_gltf PRIVATE ${OKTETT_GLTF_DEFINITIONS})
+target_compile_options(oktett_gltf PRIVATE ${OKTETT_GLTF_INCLUDES})
+# Adds the implementation of tinygltf by a macro, which has no effect after another file has included tinygltf.
+set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/tiny.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 # Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp
