@@ -147,19 +147,20 @@ OKTETT_INLINE bool id_before(std::uint32_t path, std::uint32_t item, std::uint32
   return p != q ? p < q : item < item_b;
 }
 
-/// Keeps the hit of lane `i` with `item` at distance t if it is the nearest so far, or as near and first in
-/// order: that of items, or of the v and then the u of one item, several cells of which may meet there.
+/// Whether the first of two hits at equal distance counts: that of the earlier path and item; of one item,
+/// several cells of which may meet there, that of the lesser v, then u.
+OKTETT_INLINE bool comes_first(const Hit& a, const Hit& b) {
+  if (a.instance != b.instance || a.item != b.item) return id_before(a.instance, a.item, b.instance, b.item);
+  return a.v != b.v ? a.v < b.v : a.u < b.u;
+}
+
+/// Keeps the hit of lane `i` with `item` at distance t if it is the nearest so far, or as near and comes
+/// first.
 template <int W, class A>
 OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float v, std::uint32_t item,
                               std::uint32_t path) {
   if (t > r.tmax[i]) return;
-  if (t == r.tmax[i] && r.item[i] != kNoId) {
-    if (path == r.path[i] && item == r.item[i]) {
-      if (v != r.v[i] ? v > r.v[i] : u >= r.u[i]) return;
-    } else if (!id_before(path, item, r.path[i], r.item[i])) {
-      return;
-    }
-  }
+  if (t == r.tmax[i] && r.item[i] != kNoId && !comes_first({t, u, v, item, path}, r.hit(i))) return;
   r.tmax[i] = t, r.u[i] = u, r.v[i] = v, r.item[i] = item, r.path[i] = path;
 }
 

@@ -180,6 +180,29 @@ TEST(Patches, PolesAreMetOnce) {
   for (const std::vector<Hit>& hits : all_crossings(*accel, from_outside)) EXPECT_EQ(hits.size(), 2u);
 }
 
+/// Eight patches meet at each pole, and several have a hit at the same distance: in each way through the tree
+/// the same one counts.
+TEST(Patches, PolesHaveOnePieceInEachMode) {
+  const auto accel = accel_of(globe());
+  CaseRandom random(7);
+  RayBatch rays;
+  for (int n = 0; n < 512; ++n) {
+    const Vec3d pole{0, 0, n % 2 == 0 ? 1.0 : -1.0};
+    rays.push_back(towards(n % 4 < 2 ? Vec3d{0, 0, 5} : random.vector() * (n % 8 < 4 ? 0.5 : 4), pole));
+  }
+  HitBatch expected, hits;
+  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
+  closest_hit(*accel, rays.span(), expected.span(), available_isas().front(), TraceMode::single);
+  for (const Isa isa : available_isas())
+    for (const TraceMode mode : {TraceMode::automatic, TraceMode::single, TraceMode::interleaved,
+                                 TraceMode::packet8, TraceMode::packet16, TraceMode::beam}) {
+      closest_hit(*accel, rays.span(), hits.span(), isa, mode);
+      int others = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) others += !(hits[i] == expected[i]);
+      EXPECT_EQ(others, 0) << to_string(isa) << " " << static_cast<int>(mode);
+    }
+}
+
 TEST(Patches, ASolidIsLeftAsOftenAsItIsEntered) {
   const auto accel = accel_of(globe());
   CaseRandom random(6);

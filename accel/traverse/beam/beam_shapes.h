@@ -94,12 +94,11 @@ template <class F, class A>
 OKTETT_INLINE void keep_hits(const HitSpan& hits, BeamRays<A>& beam, const RayLanes<F>& rays, std::size_t at,
                              unsigned met, const HitLanes<F>& h, std::uint32_t item) {
   using I = Simd<std::int32_t, F::kWidth, A>;
-  // At equal distance the numbers of the items decide.
-  for (unsigned same = met & bits(h.t == rays.tmax); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
-    const std::size_t i = at + static_cast<std::size_t>(__builtin_ctz(same));
-    if (hits.item[i] != kNoId && !id_before(kNoId, item, hits.instance[i], hits.item[i]))
-      met &= ~(same & -same);
-  }
+  if (const unsigned same = met & bits(h.t == rays.tmax); OKTETT_UNLIKELY(same != 0))
+    each_hit(same, h, [&](int k, float t, float u, float v) {
+      const std::size_t i = at + static_cast<std::size_t>(k);
+      if (hits.item[i] != kNoId && !comes_first({t, u, v, item, kNoId}, hits[i])) met &= ~(1u << k);
+    });
   if (met == 0) return;
   const F* d[3] = {&rays.d.x, &rays.d.y, &rays.d.z};
   store_hits(hits, beam, *d[beam.axis[2]], at, met, h, I(static_cast<std::int32_t>(item)), I(-1));

@@ -236,9 +236,7 @@ template <class A>
 OKTETT_INLINE void accept_beam(const HitSpan& hits, BeamRays<A>& beam, float dz, std::size_t i,
                                const Hit& h) {
   if (h.t > hits.t[i]) return;
-  if (h.t == hits.t[i] && hits.item[i] != kNoId &&
-      !id_before(h.instance, h.item, hits.instance[i], hits.item[i]))
-    return;
+  if (h.t == hits.t[i] && hits.item[i] != kNoId && !comes_first(h, hits[i])) return;
   hits.set(i, h);
   const float s = 1 / (h.t * dz);
   const float lo = s * (1 - kBeamPointSlack), hi = s * (1 + kBeamPointSlack);

@@ -395,9 +395,7 @@ class TriangleSteps {
   OKTETT_INLINE void keep_hit(InflightRay& ray, const Hit& hit) {
     if constexpr (Q == Query::any) return found(ray);
     RayState<1, A>& r = states_[&ray - inflight_];
-    if (ray.candidate == kDecidedHit &&
-        !(hit.t < ray.tmax || id_before(hit.instance, hit.item, r.path[0], r.item[0])))
-      return;
+    if (ray.candidate == kDecidedHit && !(hit.t < ray.tmax || comes_first(hit, r.hit(0)))) return;
     ray.candidate = kDecidedHit;
     r.set_hit(0, hit);
     ray.hit_lo = hit.t;
