@@ -79,6 +79,9 @@ struct CsgExpression {
   CsgOp op = CsgOp::operand;
   std::vector<Geometry> solids;         ///< of CsgOp::operand: it is their union
   std::vector<CsgExpression> children;  ///< of all others: what is combined, in order
+  /// Of the root: only rays that run through each of these solids meet the combination, wherever on them it
+  /// lies. Points know nothing of them. Windows of expressions inside others do not count.
+  std::vector<Geometry> windows{};
 };
 
 /// How much work the builder does. The hits are the same bits for each; but those of TriangleTest other than

@@ -72,8 +72,9 @@ struct CsgItem {
   /// The needed geometries that are quickly asked, if others are not. A ray that goes one by one asks them
   /// first.
   std::vector<CsgProbe> probes;
-  std::vector<CsgStep> steps;  ///< of all nodes, if there are at most kMaxCsgSteps
-  std::uint32_t item = 0;      ///< item of the combination in the structure that holds it
+  std::vector<CsgStep> steps;                         ///< of all nodes, if there are at most kMaxCsgSteps
+  std::vector<std::shared_ptr<const Accel>> windows;  ///< of CsgExpression::windows, one each
+  std::uint32_t item = 0;  ///< item of the combination in the structure that holds it
   /// Number of the first path through the combination, see csg_path().
   std::uint32_t first_path = 0;
 };

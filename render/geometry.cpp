@@ -523,6 +523,7 @@ class WorldBuilder {
     const std::string name = world_.objects.back().name;
     auto expression = std::make_shared<CsgExpression>(csg_expression(shape, name));
     combination_ = kNoId;
+    if (shape.windows != nullptr) add_windows(*shape.windows, expression->windows);
     geometry.shape = CsgGeometry{std::move(expression)};
     return true;
   }
@@ -551,6 +552,16 @@ class WorldBuilder {
       }
     }
     return expression;
+  }
+
+  /// Windows are never hit, so they are no objects.
+  void add_windows(const std::vector<Object>& windows, std::vector<Geometry>& to) {
+    const std::size_t count = world_.objects.size();
+    for (const Object& window : windows) {
+      Geometry solid;
+      if (make_geometry(window, solid)) to.push_back(std::move(solid));
+      world_.objects.resize(count);
+    }
   }
 
   /// Whether an operand has no surface and nothing inside: its material is a hole.

@@ -147,6 +147,11 @@ class Recentring {
       std::vector<Object> operands = *csg->operands;
       place = move(operands);
       csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
+      if (place && csg->windows != nullptr) {
+        std::vector<Object> windows = *csg->windows;
+        for (Object& window : windows) window.transform = Affine::translation(-*place) * window.transform;
+        csg->windows = std::make_shared<const std::vector<Object>>(std::move(windows));
+      }
     } else if (const auto* const instance = std::get_if<InstanceShape>(&object.shape)) {
       if (instance->prototype < places_.size()) place = places_[instance->prototype];
     }

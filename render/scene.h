@@ -488,6 +488,9 @@ struct Object;
 struct CsgShape {
   CsgOp op = CsgOp::unite;  ///< not CsgOp::operand
   std::shared_ptr<const std::vector<Object>> operands;
+  /// Shapes in the same space: only rays that run through each of them see the combination. Null: none. Of
+  /// combinations inside others they do not count.
+  std::shared_ptr<const std::vector<Object>> windows{};
 };
 
 /// What a ray is for. Those of bounces are called after the lobe that sent them: mirrors and highlights are

@@ -141,6 +141,7 @@ CsgStep step_of(const CsgItem& csg, std::uint32_t node) {
 CsgExpression moved(CsgExpression e, const Affine& m) {
   for (Geometry& g : e.solids) g.transform = m * g.transform;
   for (CsgExpression& child : e.children) child = moved(std::move(child), m);
+  for (Geometry& window : e.windows) window.transform = m * window.transform;
   return e;
 }
 
@@ -188,6 +189,11 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   if (!csg.in_lanes) find_probes(csg);
   if (csg.nodes.size() <= kMaxCsgSteps)
     for (std::uint32_t node = 0; node < csg.nodes.size(); ++node) csg.steps.push_back(step_of(csg, node));
+  for (Geometry window : expression.windows) {
+    window.mask = ~0u;
+    csg.windows.push_back(build_accel({std::move(window)}, options));
+    prepare_senses(*csg.windows.back(), seen);
+  }
   return csg;
 }
 
@@ -341,6 +347,14 @@ bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line)
 }
 
 }  // namespace
+
+bool runs_through_windows(const CsgItem& csg, const Ray& ray) {
+  const Ray endless{ray.origin, ray.tmin, ray.direction, std::numeric_limits<float>::infinity()};
+  return std::ranges::all_of(csg.windows, [&](const std::shared_ptr<const Accel>& window) {
+    return any_hit(*window, endless) ||
+           (is_unbounded(window->geometries[0]) && runs_inside(*window, 0, endless));
+  });
+}
 
 bool runs_inside(const Accel& accel, std::uint32_t geometry, const Ray& ray) {
   const Vec3d direction(ray.direction);

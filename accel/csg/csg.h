@@ -31,6 +31,9 @@ Box csg_bounds(const CsgItem& csg);
 /// ray.tmin on.
 bool runs_inside(const Accel& accel, std::uint32_t geometry, const Ray& ray);
 
+/// Whether a ray, which does not end at tmax for this, runs through all windows of the combination.
+bool runs_through_windows(const CsgItem& csg, const Ray& ray);
+
 /// The distance within which crossings from `t` on count as coincident: it covers the rounding of t to float
 /// and the errors of the surfaces.
 inline float coincidence(float t, float slack) { return t * 0x1p-21f + slack; }

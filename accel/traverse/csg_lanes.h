@@ -413,12 +413,25 @@ OKTETT_NOINLINE void csg_listed(const CsgItem& csg, RayState<W, A>& r, int base,
   }
 }
 
+/// Those of `lanes` that run through all windows of the combination.
+template <int W, class A>
+OKTETT_NOINLINE unsigned through_windows(const CsgItem& csg, const RayState<W, A>& r, unsigned lanes) {
+  unsigned through = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    const Ray ray{{r.o[0][i], r.o[1][i], r.o[2][i]}, r.tmin[i], {r.d[0][i], r.d[1][i], r.d[2][i]}, r.tmax[i]};
+    if (runs_through_windows(csg, ray)) through |= 1u << i;
+  }
+  return through;
+}
+
 /// The rays in `lanes` against the combinations of a leaf.
 template <int W, class A>
-OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r, unsigned lanes) {
+OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r, unsigned all) {
   constexpr int N = CsgLanes<A>::N;
   for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
     const CsgItem& csg = accel.combinations[k];
+    const unsigned lanes = csg.windows.empty() ? all : through_windows<W, A>(csg, r, all);
     if (!csg.in_lanes && !(csg.listed && N > 1)) {
       csg_singly(csg, r, lanes);
       continue;
@@ -437,6 +450,8 @@ OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayStat
 /// Appends every crossing of a ray with a combination.
 template <class A>
 OKTETT_NOINLINE void collect_csg(const CsgItem& csg, const Ray& ray, HitList& hits) {
+  // Windows hide: where no surface is looked for, but an inside, they do not count.
+  if (!csg.windows.empty() && !hits.keeps_unseen && !runs_through_windows(csg, ray)) return;
   CsgSweep sweep;
   if (gather_solids<A>(csg, ray, sweep.solids())) sweep.all(csg, ray, hits);
 }

@@ -37,6 +37,8 @@ std::string light_list_schema(Schema& schema) {
   return schema_of(schema, kAnyNumber, LightListNames{list, false});
 }
 
+std::string operands_schema(Schema& schema) { return Schema::list(object_schema(schema), kNotEmpty); }
+
 /// What an object may have besides the one key that says what it is.
 constexpr SchemaRow kObjectKeys[] = {
     {"material", "its name, or a map", material_schema},
@@ -48,10 +50,10 @@ constexpr SchemaRow kObjectKeys[] = {
     {"visible_to", "the rays that meet it; all if left out", visible_to_schema},
     {"shadow_catcher", "the camera sees only the shadows on it", [](Schema&) { return Schema::boolean(); }},
     {"hollow", "fog is in the solid, too", [](Schema&) { return Schema::boolean(); }},
+    {"seen_through", "of a combination: solids; only rays that run through each of them meet it",
+     operands_schema},
     {"lights_only", "of what glows: the objects that it lights", light_list_schema},
     {"lights_except", "of what glows: the objects that it does not light", light_list_schema}};
-
-std::string operands_schema(Schema& schema) { return Schema::list(object_schema(schema), kNotEmpty); }
 
 /// What an object may be besides a shape that describes its parameters.
 constexpr SchemaRow kOtherShapes[] = {
@@ -165,12 +167,18 @@ class ObjectReader {
         read_motion_of(*motion, inner);
       });
     read_visibility(fields, inner);
+    std::vector<Object> windows;
+    if (const YamlNode* list = fields["seen_through"])
+      attempt(*list, [&] { windows = read_windows(kind, *list); });
     if (!key) return;
     const std::string own_name = object.name;
     if (is_group)
       for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
     else
       add_shape(*key, *value, object, inner);
+    if (!windows.empty() && out_.size() > first)
+      if (auto* const csg = std::get_if<CsgShape>(&out_.back().shape))
+        csg->windows = std::make_shared<const std::vector<Object>>(std::move(windows));
     if (!own_name.empty()) note_name(own_name, first);
   }
 
@@ -335,6 +343,41 @@ class ObjectReader {
       return std::nullopt;
     }
     return CsgShape{op, std::make_shared<const std::vector<Object>>(std::move(solids))};
+  }
+
+  std::vector<Object> read_windows(const std::string& kind, const YamlNode& list) {
+    if (std::ranges::find(kCsgKeys, kind, &Choice<CsgOp>::name) == std::end(kCsgKeys))
+      throw Error(list.where(),
+                  "only combinations are seen through solids; expected the key beside 'union', "
+                  "'intersection' or 'difference'");
+    if (is_operand_)
+      throw Error(list.where(),
+                  "what is in a combination is seen as the combination is; expected 'seen_through' there");
+    const auto nodes = list_items(list, "seen_through");
+    if (nodes.empty()) throw Error(list.where(), "seen_through needs at least one solid");
+    std::vector<Object> windows;
+    ObjectReader reader(load_, windows, defining_, name_);
+    reader.is_operand_ = true;
+    for (const YamlNode* node : nodes) {
+      const std::size_t first = windows.size();
+      reader.read(*node, {});
+      for (std::size_t i = first; i < windows.size(); ++i)
+        attempt(*node, [&] {
+          require_solid(load_, windows[i], "only solids can be seen through");
+          if (holds_triangles(windows[i]))
+            throw Error(node->where(),
+                        "meshes and instances cannot be seen through; expected a shape such as a sphere or a "
+                        "box");
+        });
+    }
+    return windows;
+  }
+
+  static bool holds_triangles(const Object& object) {
+    if (const auto* const csg = std::get_if<CsgShape>(&object.shape))
+      return std::ranges::any_of(*csg->operands, holds_triangles);
+    return std::holds_alternative<MeshShape>(object.shape) ||
+           std::holds_alternative<InstanceShape>(object.shape);
   }
 
   /// Throws Error if the operand is an instance of what is not visible to all rays.

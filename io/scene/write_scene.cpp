@@ -91,6 +91,11 @@ class SceneWriter {
       if (key.value == csg->op) out = std::string(key.name) + ": [";
     for (const Object& operand : *csg->operands)
       out += (&operand == csg->operands->data() ? "" : ", ") + object_text(operand);
+    out += "]";
+    if (csg->windows == nullptr) return out;
+    out += ", seen_through: [";
+    for (const Object& window : *csg->windows)
+      out += (&window == csg->windows->data() ? "" : ", ") + object_text(window);
     return out + "]";
   }
 

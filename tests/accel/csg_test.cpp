@@ -483,5 +483,34 @@ TEST(Csg, ErrorsOfPositionsHoldTheReach) {
   }
 }
 
+/// A ray meets all of a combination or nothing, by whether it runs through the windows, wherever they are on
+/// it; with meshes among the solids, too, which are swept one ray after the other.
+TEST(Csg, WindowsHideWhatTheyDoNotCut) {
+  CsgExpression e = combine(CsgOp::unite, {cube({0, -4, -4}, {1, 4, 4}, 0), ball({3, 0, 0}, 1, 1)});
+  e.windows = {ball({-2, 0, 0}, 1, 0)};
+  const auto accel = built(whole(e));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0.5f, 0.25f)).size(), 4u);
+  EXPECT_EQ(crossings(*accel, ray_along_x(1.5f)), Distances{});
+  // The window lies before the beginning, around it, and behind all.
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, -0.5f)), Distances{});
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, -2)), (Distances{2, 3, 4, 6}));
+  e.windows = {ball({50, 0, 0}, 1, 0)};
+  EXPECT_EQ(crossings(*built(whole(e)), ray_along_x(0, 0, -0.5f)), (Distances{0.5f, 1.5f, 2.5f, 4.5f}));
+  // Each of several must be met, and they move with the combination.
+  e.windows = {ball({-2, 0, 0}, 1, 0), cube({-5, 0.5, -1}, {-4, 2, 1}, 0)};
+  const auto moved = built(whole(e, Affine::translation({0, 8, 0})));
+  EXPECT_EQ(crossings(*moved, ray_along_x(8.75f)).size(), 4u);
+  EXPECT_EQ(crossings(*moved, ray_along_x(8.25f)), Distances{});
+  EXPECT_EQ(crossings(*moved, ray_along_x(9.75f)), Distances{});
+  // Half-spaces: inside of one there may be no crossing.
+  e.windows = {solid(PlaneShape{{0, 1, 0}, 0.25}, 0)};
+  EXPECT_EQ(crossings(*built(whole(e)), ray_along_x(0)).size(), 4u);
+  EXPECT_EQ(crossings(*built(whole(e)), ray_along_x(0.5f)), Distances{});
+  // Combinations are windows, too.
+  e.windows = {whole(combine(CsgOp::subtract, {ball({-2, 0, 0}, 1, 0), ball({-2, 0, 0}, 0.5, 0)}))};
+  EXPECT_EQ(crossings(*built(whole(e)), ray_along_x(0.75f)).size(), 4u);
+  EXPECT_EQ(crossings(*built(whole(e)), ray_along_x(1.25f)), Distances{});
+}
+
 }  // namespace
 }  // namespace oktett::csg_test

@@ -200,6 +200,31 @@ TEST(PovScene, PolynomialsWithoutBoundsGetSomeIfTheyHaveAny) {
       << endless;
 }
 
+/// What bounds an endless polynomial is what it is seen through, moved by the transforms behind it; in
+/// combinations, and of what has an end, it cuts as before.
+TEST(PovScene, EndlessPolynomialsAreSeenThroughTheirBounds) {
+  const PovFiles files;
+  const std::string cubic = "cubic { <0,0,0,1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,-1> ";
+  const std::string seen =
+      files.object("#version 3.7;\n" + cubic + "scale 2 bounded_by { sphere { 0, 3 } } translate x }");
+  EXPECT_NE(
+      seen.find(
+          "seen_through: [{sphere: {center: [0, 0, 0], radius: 3}, transform: {translate: [1, 0, 0]}}]"),
+      std::string::npos)
+      << seen;
+  EXPECT_NE(seen.find("max: [1000, 1000, 1000]"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("transform: [{scale: 2}, {translate: [1, 0, 0]}]"), std::string::npos) << seen;
+  EXPECT_EQ(seen.find("open"), std::string::npos) << seen;
+  for (const std::string& cut :
+       {"intersection { sphere { 0, 9 } " + cubic + "bounded_by { sphere { 0, 3 } } } }",
+        cubic + "bounded_by { union { sphere { 0, 3 } } } }", cubic + "clipped_by { sphere { 0, 3 } } }",
+        std::string("poly { 2, <1,0,0,0, 1,0,0, 1,0, -1> bounded_by { sphere { 0, 3 } } }")}) {
+    const std::string text = files.object("#version 3.7;\n" + cut);
+    EXPECT_EQ(text.find("seen_through"), std::string::npos) << text;
+    EXPECT_NE(text.find("max: [3.06"), std::string::npos) << text;
+  }
+}
+
 TEST(PovScene, TransformsKeepTheirOrder) {
   expect_objects({
       {"sphere { 0, 1 scale 2 rotate y*30 translate x }",

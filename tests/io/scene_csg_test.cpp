@@ -127,6 +127,36 @@ TEST(SceneCsg, SkippedOperandsAreNothing) {
   EXPECT_EQ(flattened.warnings.size(), 1u);
 }
 
+TEST(SceneCsg, ReadsWhatCombinationsAreSeenThrough) {
+  const SceneFiles files;
+  const Scene scene = files.load_v1(
+      "objects:\n"
+      "  - union: [{sphere: }]\n"
+      "    seen_through: [{box: }, {union: [{sphere: }, {plane: }], transform: {translate: [1, 2, 3]}}]\n"
+      "    transform: {translate: [4, 0, 0]}\n");
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_EQ(scene.objects.size(), 1u);
+  const auto& windows = csg(scene).windows;
+  ASSERT_NE(windows, nullptr);
+  ASSERT_EQ(windows->size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<BoxShape>((*windows)[0].shape));
+  EXPECT_TRUE((*windows)[0].transform.is_identity());
+  EXPECT_EQ((*windows)[1].transform.point({0, 0, 0}), (Vec3d{1, 2, 3}));
+
+  const auto error = [&](const std::string& object) { return files.error_v1("objects:\n  - " + object); };
+  expect_starts(error("{sphere: , seen_through: [{box: }]}\n"),
+                "scene.yaml:3:30: only combinations are seen through solids");
+  expect_starts(error("{union: [{union: [{sphere: }], seen_through: [{box: }]}]}\n"),
+                "scene.yaml:3:50: what is in a combination is seen as the combination is");
+  expect_starts(error("{union: [{sphere: }], seen_through: [{disk: }]}\n"),
+                "scene.yaml:3:42: a disk has no inside; only solids can be seen through");
+  expect_starts(error("{union: [{sphere: }], seen_through: []}\n"),
+                "scene.yaml:3:41: seen_through needs at least one solid");
+  files.dir.write("solid.obj", kTetrahedron);
+  expect_starts(error("{union: [{sphere: }], seen_through: [{mesh: {file: solid.obj}}]}\n"),
+                "scene.yaml:3:42: meshes and instances cannot be seen through");
+}
+
 TEST(SceneCsg, BadCombinationsAreExplained) {
   const SceneFiles files;
   expect_starts(files.error_v1("objects:\n  - union: []\n"), "scene.yaml:3:5: union needs at least one");

@@ -170,6 +170,48 @@ class TreeMaker {
   const TriangleMesh *ball_, *cube_;
 };
 
+/// A solid that rays have to run through to meet a combination.
+class Window {
+ public:
+  explicit Window(CaseRandom& random)
+      : is_ball_(random.unit() < 0.5), center_(random.vector() * 0.8), size_(0.3 + random.unit()) {}
+
+  Geometry geometry() const {
+    Geometry g;
+    const Vec3d edge{size_, size_, size_};
+    if (is_ball_)
+      g.shape = SpheresShape{{{center_, size_}}};
+    else
+      g.shape = BoxShape{center_ - edge, center_ + edge};
+    return g;
+  }
+
+  /// Whether a ray meets what is `more` larger.
+  bool is_met_by(const Ray& ray, long double more) const {
+    const Vec3l o = Vec3l(ray.origin) - Vec3l(center_), d(ray.direction);
+    const long double size = size_ + more;
+    if (is_ball_) {
+      const Vec3l nearest = o + d * std::max(0.0L, -dot(o, d) / dot(d, d));
+      return dot(nearest, nearest) <= size * size;
+    }
+    long double begin = 0, end = std::numeric_limits<long double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      if (d[k] == 0) {
+        if (std::abs(o[k]) > size) return false;
+        continue;
+      }
+      const long double a = (-size - o[k]) / d[k], b = (size - o[k]) / d[k];
+      begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+    }
+    return begin <= end;
+  }
+
+ private:
+  bool is_ball_;
+  Vec3d center_;
+  double size_;
+};
+
 class CsgChecker {
  public:
   CsgChecker(std::uint64_t tree, const std::vector<Isa>& isas, CsgTally& tally)
@@ -177,6 +219,12 @@ class CsgChecker {
     auto expression = std::make_shared<CsgExpression>();
     const int operands = 1 + static_cast<int>(std::pow(kMaxOperands, random_.unit()));
     inside_ = TreeMaker(random_).make(*expression, std::min(operands, kMaxOperands), 0);
+    // A fifth of the trees are seen through windows.
+    CaseRandom random(mix_bits(tree + 78));
+    for (int i = 0; i < 2 && random.unit() < 0.2 * (1 + 2 * i); ++i) {
+      windows_.emplace_back(random);
+      expression->windows.push_back(windows_.back().geometry());
+    }
     Geometry whole;
     whole.shape = CsgGeometry{expression};
     accel_ = build_accel({whole}, {BuildQuality::balanced, false});
@@ -227,6 +275,14 @@ class CsgChecker {
     tally_.crossings += list_.size();
     if (first.valid() ? list_.empty() || !(list_.front() == first) : !list_.empty())
       fail(tally_.wrong_first, ray, "closest_hit is not the first of all_hits");
+    constexpr long double kGraze = 1e-5L;
+    const auto is_met = [&](long double more) {
+      return std::ranges::all_of(windows_, [&](const Window& w) { return w.is_met_by(ray, more); });
+    };
+    if (!is_met(-kGraze)) {
+      if (!list_.empty() && !is_met(kGraze)) fail(tally_.wrong_first, ray, "it misses a window, but hits");
+      return;
+    }
     const Vec3l o(ray.origin), d(ray.direction);
     // Coordinates are below 8; crossings are in float and coincide within 2^-21.
     const auto at = [&](long double t) { return inside_(o + d * t); };
@@ -296,6 +352,7 @@ class CsgChecker {
   const std::vector<Isa>& isas_;
   CsgTally& tally_;
   Inside inside_;
+  std::vector<Window> windows_;
   std::shared_ptr<const Accel> accel_;
   std::vector<Hit> list_;
 };

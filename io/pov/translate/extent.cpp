@@ -172,7 +172,7 @@ Extent extent_of(Context& context, const Block& block) {
   return extent;
 }
 
-Extent limits_of(Context& context, const Block& block) {
+Extent limits_of(Context& context, const Block& block, std::string_view keyword) {
   Extent limits;
   Arguments a(context, block);
   Moves moves;
@@ -180,7 +180,7 @@ Extent limits_of(Context& context, const Block& block) {
     if (take_moves(context, a, moves)) continue;
     const Block* const inner = a.peek_block();
     a.take();
-    if (inner == nullptr || (inner->keyword != "clipped_by" && inner->keyword != "bounded_by")) continue;
+    if (inner == nullptr || inner->keyword != keyword) continue;
     const Extent e = extent_of(context, *inner);
     if (moves.all.is_invertible()) limits = limits.meet(e.moved(moves.all.inverse()));
   }

@@ -24,8 +24,9 @@ struct Extent {
 
 /// The box around an object, in the space that it stands in.
 Extent extent_of(Context& context, const Block& block);
-/// The box that `clipped_by` and `bounded_by` of an object leave of it, in its space before its transforms.
-Extent limits_of(Context& context, const Block& block);
+/// The box around what blocks `keyword`, which is clipped_by or bounded_by, leave of an object, in its space
+/// before its transforms.
+Extent limits_of(Context& context, const Block& block, std::string_view keyword);
 
 /// Whether a block of this keyword is an object.
 bool is_object(std::string_view keyword);

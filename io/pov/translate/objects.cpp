@@ -21,7 +21,7 @@ struct ObjectWriter::Modifiers {
     std::shared_ptr<const Block> block;
     std::size_t moves_before;
   };
-  std::vector<Clip> clips;
+  std::vector<Clip> clips, bounds;
   Dress own;
   bool no_shadow = false, no_image = false, no_reflection = false, inverse = false;
   bool hollow = false;
@@ -208,6 +208,28 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
   return build_children(block, children, m, outer);
 }
 
+/// The objects that stand in a block.
+static std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) {
+  std::vector<std::shared_ptr<const Block>> objects;
+  for (const Element& e : block.elements)
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
+      objects.push_back(*inner);
+  return objects;
+}
+
+/// Whether all that bounds an object is a shape that scene files can look through.
+static bool is_bounded_by_windows(const Block& block) {
+  constexpr std::array<std::string_view, 6> kWindows{"sphere", "box", "cylinder", "cone", "plane", "torus"};
+  return std::ranges::all_of(block.elements, [&](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    if (inner == nullptr || *inner == nullptr || (*inner)->keyword != "bounded_by") return true;
+    return std::ranges::all_of(objects_in(**inner), [&](const std::shared_ptr<const Block>& object) {
+      return std::ranges::find(kWindows, object->keyword) != kWindows.end() && !has_word(*object, "inverse");
+    });
+  });
+}
+
 /// What stands in a block `interior_texture`, as a texture.
 static std::shared_ptr<const Block> texture_of_back(const Block& block) {
   auto texture = std::make_shared<Block>(block);
@@ -235,7 +257,9 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
         m.clips.push_back({inner, m.moves.list.size()});
       } else if (k == "interior_texture") {
         m.own.back.push_back(texture_of_back(*inner));
-      } else if (k != "bounded_by" && k != "photons" && k != "radiosity" && k != "uv_mapping") {
+      } else if (k == "bounded_by") {
+        m.bounds.push_back({inner, m.moves.list.size()});
+      } else if (k != "photons" && k != "radiosity" && k != "uv_mapping") {
         context_.tell(fmt::format("modifier {}", k), where,
                       fmt::format("'{}' of an object has no meaning here, and is left out", k));
       }
@@ -292,18 +316,19 @@ Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
 }
 
 ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& outer, Arguments& arguments) {
-  Extent within = limits_of(context_, block);
+  ShapeLimits limits{limits_of(context_, block, "clipped_by"), limits_of(context_, block, "bounded_by"),
+                     is_bounded_by_windows(block)};
   // What encloses it, seen from its space.
   Moves moves;
   Arguments scan(context_, block);
   while (!scan.at_end())
     if (!take_moves(context_, scan, moves)) scan.take();
-  if (moves.all.is_invertible()) within = within.meet(outer.within.moved(moves.all.inverse()));
+  if (moves.all.is_invertible()) limits.within = limits.within.meet(outer.within.moved(moves.all.inverse()));
   const bool is_clipped = std::ranges::any_of(block.elements, [](const Element& e) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     return inner != nullptr && *inner != nullptr && (*inner)->keyword == "clipped_by";
   });
-  std::optional<Shapes> shapes = make_shapes(context_, arguments, within, outer.operand || is_clipped);
+  std::optional<Shapes> shapes = make_shapes(context_, arguments, limits, outer.operand || is_clipped);
   const Modifiers m = read_modifiers(block, arguments);
   if (!shapes || shapes->parts.empty()) return std::nullopt;
   Tree& tree = context_.tree;
@@ -335,7 +360,35 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
     for (const Built& part : parts) nodes.push_back(part.node);
     whole = {list_node(block.where, "group", nodes), shapes->solid, false};
   }
+  if (shapes->beyond_bounds)
+    return finish(block, m, outer, seen_through_bounds(block, m, outer, whole), true);
   return finish(block, m, outer, whole, false);
+}
+
+ObjectWriter::Built ObjectWriter::seen_through_bounds(const Block& block, const Modifiers& m,
+                                                      const Outer& outer, Built built) {
+  Tree& tree = context_.tree;
+  Outer inside;
+  inside.operand = true, inside.default_texture = outer.default_texture;
+  std::vector<Node> windows;
+  const bool was_asked = std::exchange(asked_, true);
+  for (const Modifiers::Clip& bound : m.bounds) {
+    Moves moves;
+    for (std::size_t k = bound.moves_before; k < m.moves.list.size(); ++k) moves.add(m.moves.list[k]);
+    for (const Built& part : build_all(objects_in(*bound.block), inside)) {
+      if (!part.node || part.negative) continue;
+      windows.push_back(part.node);
+      add_moves(part.node, moves, block.where);
+    }
+  }
+  asked_ = was_asked;
+  add_moves(built.node, m.moves, block.where);
+  if (windows.empty()) return built;
+  built.node = list_node(block.where, "union", {built.node});
+  const Node list = tree.list(block.where);
+  for (const Node window : windows) Tree::push(list, window);
+  tree.put(built.node, "seen_through", list);
+  return built;
 }
 
 std::vector<ObjectWriter::Built> ObjectWriter::build_all(
@@ -366,7 +419,7 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
   inner.to_world = outer.to_world * m.moves.all;
   inner.operand =
       outer.operand || !m.clips.empty() || k == "intersection" || k == "difference" || k == "merge";
-  inner.within = limits_of(context_, block);
+  inner.within = limits_of(context_, block, "clipped_by").meet(limits_of(context_, block, "bounded_by"));
   if (m.moves.all.is_invertible())
     inner.within = inner.within.meet(outer.within.moved(m.moves.all.inverse()));
   if (k == "intersection")
@@ -397,22 +450,23 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
                 {nodes.size() == 1 ? nodes[0] : list_node(block.where, "group", nodes), solid, false}, false);
 }
 
+/// Transforms that follow those that an object of scene files has.
+void ObjectWriter::add_moves(Node object, const Moves& moves, const Place& where) {
+  if (moves.empty()) return;
+  const bool has_own =
+      std::ranges::any_of(object->items, [](const YamlNode* n) { return n->text == "transform"; });
+  if (has_own)
+    extend_transform(object, moves);
+  else
+    context_.tree.put(object, "transform", moves_node(context_.tree, where, moves));
+}
+
 /// Adds transforms, unless they are there already, and what cuts or hides the object.
 ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m, const Outer& outer,
                                          Built built, bool moved) {
   Tree& tree = context_.tree;
   const Place& where = block.where;
-  const auto move = [&](const Moves& moves) {
-    if (moves.empty()) return;
-    // A transform of its own is followed by that of what is around it.
-    const bool has_own =
-        std::ranges::any_of(built.node->items, [](const YamlNode* n) { return n->text == "transform"; });
-    if (has_own) {
-      extend_transform(built.node, moves);
-      return;
-    }
-    tree.put(built.node, "transform", moves_node(tree, where, moves));
-  };
+  const auto move = [&](const Moves& moves) { add_moves(built.node, moves, where); };
   std::size_t done = 0;
   const auto moves_until = [&](std::size_t end) {
     Moves some;
@@ -425,15 +479,10 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
       context_.tell("clipped flat", clip.block->where, "what has no inside is not cut by 'clipped_by'");
       continue;
     }
-    std::vector<std::shared_ptr<const Block>> cutters;
-    for (const Element& e : clip.block->elements)
-      if (const auto* const cutter = std::get_if<std::shared_ptr<const Block>>(&e.value);
-          cutter != nullptr && *cutter != nullptr && is_object((*cutter)->keyword))
-        cutters.push_back(*cutter);
     Outer inside;
     inside.operand = true, inside.default_texture = outer.default_texture;
     const bool was_hidden = std::exchange(hidden_, true);
-    std::vector<Built> parts = build_all(cutters, inside);
+    std::vector<Built> parts = build_all(objects_in(*clip.block), inside);
     hidden_ = was_hidden;
     std::erase_if(parts, [](const Built& b) { return !b.node; });
     if (parts.empty()) continue;

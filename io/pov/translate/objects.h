@@ -67,7 +67,10 @@ class ObjectWriter {
   Maybe build_instance(const std::shared_ptr<const Block>& block, const Outer& outer);
   std::vector<Built> build_all(const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer);
   void read_material(const Block& block, Modifiers& modifiers);
+  void add_moves(Node object, const Moves& moves, const Place& where);
   void extend_transform(Node object, const Moves& moves);
+  /// The object, moved, as seen only through what `bounded_by` names.
+  Built seen_through_bounds(const Block& block, const Modifiers& m, const Outer& outer, Built built);
   void set_hollow(Node object, const Place& where);
   Modifiers read_modifiers(const Block& block, Arguments& arguments);
   Dress dress_of(const Modifiers& m, const Outer& outer) const;

@@ -90,6 +90,13 @@ Extent bounds_of(const std::vector<Term>& terms, bool solid) {
   return kAll;
 }
 
+/// Whether the surface may go on where the search for its bounds ended.
+bool reaches_end(const Extent& zeros) {
+  bool reaches = false;
+  for (int k = 0; k < 3; ++k) reaches |= zeros.lo[k] <= -kReach || zeros.hi[k] >= kReach;
+  return reaches;
+}
+
 std::string equation(const std::vector<Term>& terms) {
   std::string text;
   for (const Term& t : terms) {
@@ -104,7 +111,7 @@ std::string equation(const std::vector<Term>& terms) {
 
 }  // namespace
 
-std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree, const Extent& within,
+std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree, const ShapeLimits& limits,
                                       bool operand) {
   const Place& where = a.block().where;
   const auto left_out = [&](const char* why) {
@@ -129,18 +136,33 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
   Tree& tree = context.tree;
   const Node keys = tree.map(where);
   tree.put(keys, "equation", tree.text(where, equation(terms)));
-  Extent box = within.is_finite() ? within : bounds_of(terms, operand);
+  const auto box_node = [&](const Extent& e) {
+    const Node box = tree.map(where, "min", tree.vector(where, e.lo));
+    tree.put(box, "max", tree.vector(where, e.hi));
+    return box;
+  };
+  const Extent within = limits.within.meet(limits.bounded);
+  Extent box = within;
+  Shapes shapes;
+  if (!limits.within.is_finite()) {
+    const Extent zeros = bounds_of(terms, operand);
+    shapes.beyond_bounds = within.is_finite() && limits.are_windows && !operand && reaches_end(zeros);
+    if (shapes.beyond_bounds || !within.is_finite()) box = zeros;
+  }
+  const bool ends_at_reach = shapes.beyond_bounds || !within.is_finite();
   // The faces of the bounds lie outside of what bounds it.
   const Vec3d room = (box.hi - box.lo) * 0.01 + Vec3d{1e-6, 1e-6, 1e-6};
+  const Extent cut = box.meet(kAll);
   box = {box.lo - room, box.hi + room};
-  if (!within.is_finite()) box = box.meet(kAll);
-  const Node bounds = tree.map(where, "min", tree.vector(where, box.lo));
-  tree.put(bounds, "max", tree.vector(where, box.hi));
-  tree.put(keys, "bounds", bounds);
-  if (!operand) tree.put(keys, "open", tree.flag(where, true));
-  Shapes shapes;
+  if (ends_at_reach && !shapes.beyond_bounds) box = box.meet(kAll);
+  tree.put(keys, "bounds", box_node(box));
+  shapes.solid = operand || shapes.beyond_bounds;
+  if (!shapes.solid) tree.put(keys, "open", tree.flag(where, true));
   shapes.parts.push_back({"polynomial", keys, nullptr, {}});
-  shapes.solid = operand;
+  if (shapes.beyond_bounds) {
+    shapes.parts.push_back({"box", box_node(cut), nullptr, {}, true});
+    shapes.meet = true;
+  }
   return shapes;
 }
 

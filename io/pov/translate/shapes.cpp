@@ -24,12 +24,12 @@ namespace {
 
 class ShapeMaker {
  public:
-  ShapeMaker(Context& context, Arguments& a, const Extent& within, bool operand)
+  ShapeMaker(Context& context, Arguments& a, const ShapeLimits& limits, bool operand)
       : context_(context),
         tree_(context.tree),
         a_(a),
         where_(a.block().where),
-        within_(within),
+        limits_(limits),
         operand_(operand) {}
 
   std::optional<Shapes> make() {
@@ -43,9 +43,9 @@ class ShapeMaker {
     if (k == "torus") return torus();
     if (k == "ovus") return ovus();
     if (k == "quadric") return quadric();
-    if (k == "cubic") return make_polynomial(context_, a_, 3, within_, operand_);
-    if (k == "quartic") return make_polynomial(context_, a_, 4, within_, operand_);
-    if (k == "poly") return make_polynomial(context_, a_, 0, within_, operand_);
+    if (k == "cubic") return make_polynomial(context_, a_, 3, limits_, operand_);
+    if (k == "quartic") return make_polynomial(context_, a_, 4, limits_, operand_);
+    if (k == "poly") return make_polynomial(context_, a_, 0, limits_, operand_);
     if (k == "superellipsoid") return superellipsoid();
     if (k == "blob") return make_blob(context_, a_);
     if (k == "lathe") return lathe();
@@ -548,15 +548,15 @@ class ShapeMaker {
   Tree& tree_;
   Arguments& a_;
   Place where_;
-  Extent within_;
+  ShapeLimits limits_;
   bool operand_;
 };
 
 }  // namespace
 
-std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const Extent& within,
+std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const ShapeLimits& limits,
                                   bool operand) {
-  return ShapeMaker(context, arguments, within, operand).make();
+  return ShapeMaker(context, arguments, limits, operand).make();
 }
 
 }  // namespace oktett::pov

@@ -26,10 +26,19 @@ struct Shapes {
   bool solid = true;  ///< has an inside
   /// Instead of the union of the parts: what they have in common.
   bool meet = false;
+  bool beyond_bounds = false;  ///< they reach beyond ShapeLimits::bounded, through which alone they are seen
 };
 
-/// Reads the arguments of an object up to its modifiers. `within`: a box around what is seen of it, in its
-/// own space. `operand`: its inside is needed. Nothing, after a warning, if scene files have no such shape.
-std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const Extent& within, bool operand);
+/// Boxes about an object, in its own space.
+struct ShapeLimits {
+  Extent within;             ///< around what is seen of it
+  Extent bounded;            ///< around what `bounded_by` names, which is not meant to cut
+  bool are_windows = false;  ///< what it names can be looked through: shapes with an inside
+};
+
+/// Reads the arguments of an object up to its modifiers. `operand`: its inside is needed. Nothing, after a
+/// warning, if scene files have no such shape.
+std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const ShapeLimits& limits,
+                                  bool operand);
 
 }  // namespace oktett::pov
