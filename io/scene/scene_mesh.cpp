@@ -248,6 +248,8 @@ class SceneMeshing {
     for (;;) {
       only.shape = object.shape;
       leave_out_details(only.shape, cells);
+      // A mesh has no point that rays see it from.
+      if (auto* const csg = std::get_if<CsgShape>(&only.shape)) csg->windows = nullptr;
       const World world = build_world(alone);
       Contour found = contour(*world.accel, {cells, is_solid(object.shape, scene_.prototypes)});
       const double error = found.deviation * to_world;

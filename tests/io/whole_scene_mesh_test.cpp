@@ -271,6 +271,15 @@ TEST(WholeSceneMesh, WhatIsNoSurfaceIsLeftOut) {
   EXPECT_EQ(file.warnings.size(), 1u);
 }
 
+TEST(WholeSceneMesh, WhatCombinationsAreSeenThroughHidesNothing) {
+  const std::string solid = "objects: [{difference: [{box: }, {sphere: {radius: 0.75}}]";
+  const TriangleMesh plain = mesh_of(solid + "}]\n");
+  const TriangleMesh seen = mesh_of(solid + ", seen_through: [{sphere: {center: [0, 9, 0]}}]}]\n");
+  EXPECT_GT(plain.triangle_count(), 0u);
+  EXPECT_TRUE(std::ranges::equal(plain.positions, seen.positions));
+  EXPECT_TRUE(std::ranges::equal(plain.indices, seen.indices));
+}
+
 TEST(WholeSceneMesh, CombinationsHaveTheMaterialsOfTheirOperands) {
   const MeshFile file = file_of(
       "materials: {red: {color: [1, 0, 0]}, blue: {color: [0, 0, 1]}}\nobjects:\n  - difference:\n"
