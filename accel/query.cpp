@@ -92,34 +92,43 @@ bool is_mirrored(const Accel& accel, std::uint32_t item) {
   return accel.frames[accel.geometry_of(item)].mirrored;
 }
 
-/// Orders the crossings of one surface, which are sorted by t, so that they alternate where several have the
-/// same t: a ray that is inside leaves first, one that is outside enters first. Through a gap thinner than
-/// the spacing of floats a ray leaves and enters again at one t.
+/// Orders the crossings of one surface, which are sorted by t and then by turn, so that they alternate where
+/// several have the same t: a ray that is inside leaves first, one that is outside enters first. Through a
+/// gap thinner than the spacing of floats a ray leaves and enters again at one t; through one between two
+/// sides that coincide with a third, it leaves, enters and leaves.
 static void order_equal_crossings(std::span<Crossing> crossings) {
-  const auto end_of_group = [&](std::size_t i) {
-    const float t = crossings[i].hit.t;
-    while (i < crossings.size() && crossings[i].hit.t == t) ++i;
-    return i;
+  struct Group {
+    std::size_t end, entering, leaving;
   };
-  const auto leaves = [](const Crossing& c) { return c.turn > 0; };
-  const auto is_mixed = [&](std::size_t begin, std::size_t end) {
-    return leaves(crossings[begin]) != leaves(crossings[end - 1]);
+  const auto group_at = [&](std::size_t begin) {
+    Group group{begin, 0, 0};
+    for (; group.end < crossings.size() && crossings[group.end].hit.t == crossings[begin].hit.t; ++group.end)
+      ++(crossings[group.end].turn > 0 ? group.leaving : group.entering);
+    return group;
   };
-  // A group with crossings both ways ends on the side where it began, so the first other group tells where
-  // the ray begins.
+  // A group with as many crossings either way ends on the side where it began, so the first other group tells
+  // where the ray begins.
   bool inside = false;
-  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
-    end = end_of_group(begin);
-    if (is_mixed(begin, end)) continue;
-    inside = leaves(crossings[begin]);
+  for (std::size_t i = 0; i < crossings.size();) {
+    const Group group = group_at(i);
+    i = group.end;
+    if (group.leaving == group.entering) continue;
+    inside = group.leaving > group.entering;
     break;
   }
-  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
-    end = end_of_group(begin);
-    if (!is_mixed(begin, end))
-      inside = !leaves(crossings[begin]);
-    else if (inside)
-      std::reverse(&crossings[begin], &crossings[end - 1] + 1);
+  static thread_local std::vector<Crossing> ordered;
+  for (std::size_t begin = 0; begin < crossings.size();) {
+    const Group group = group_at(begin);
+    if (group.leaving != group.entering) inside = group.leaving > group.entering;
+    std::size_t enters = begin, leaves = begin + group.entering;
+    ordered.clear();
+    for (bool now = inside; enters < begin + group.entering || leaves < group.end; now = !now) {
+      if (now && leaves < group.end) ordered.push_back(crossings[leaves++]);
+      if (!now && enters < begin + group.entering) ordered.push_back(crossings[enters++]);
+    }
+    std::ranges::copy(ordered, crossings.begin() + static_cast<std::ptrdiff_t>(begin));
+    inside ^= group.leaving != group.entering;
+    begin = group.end;
   }
 }
 

@@ -82,6 +82,28 @@ TEST(Prisms, EdgesThatLieOnEachOtherAreNotThere) {
 }
 
 /// An edge that two outlines share lies within the solid.
+/// Three sides lie on each other in part: a ray leaves, enters and leaves at one place, and what is behind it
+/// stays.
+TEST(Prisms, ThreeSidesInOnePlaneAreCrossedInTurn) {
+  PrismShape s;
+  s.outlines = {{{0.375, -0.25},
+                 {0.375, 0.5},
+                 {0.375, 0},
+                 {0.125, 0},
+                 {0.25, 0.25},
+                 {0.5, -0.25},
+                 {0.875, 0},
+                 {0.375, 0.25}}};
+  for (const bool open : {false, true}) {
+    s.open = open;
+    expect_at(crossings(s, {2, 0.5f, 0.2f}, {-1, 0, 0}), {1.525f, 1.625f, 1.625f, 1.625f, 1.725f, 1.775f});
+    expect_at(crossings(s, {-2, 0.5f, 0.2f}, {1, 0, 0}), {2.225f, 2.275f, 2.375f, 2.375f, 2.375f, 2.475f});
+    const std::vector<Hit> from_inside = crossings(s, {0.425f, 0.5f, 0.2f}, {-1, 0, 0});
+    ASSERT_EQ(from_inside.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(from_inside[i].v, i % 2 == 0 ? 1 : -1);
+  }
+}
+
 TEST(Prisms, OutlinesSideBySideAreOne) {
   PrismShape s;
   s.outlines = {{{-1, -1}, {0, -1}, {0, 1}, {-1, 1}}, {{0, -1}, {1, -1}, {1, 1}, {0, 1}}};
