@@ -363,6 +363,7 @@ class ObjectReader {
       reader.read(*node, {});
       for (std::size_t i = first; i < windows.size(); ++i)
         attempt(*node, [&] {
+          windows[i].material = kNoId;
           require_solid(load_, windows[i], "only solids can be seen through");
           if (holds_triangles(windows[i]))
             throw Error(node->where(),

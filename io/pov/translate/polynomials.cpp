@@ -149,12 +149,11 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
     shapes.beyond_bounds = within.is_finite() && limits.are_windows && !operand && reaches_end(zeros);
     if (shapes.beyond_bounds || !within.is_finite()) box = zeros;
   }
-  const bool ends_at_reach = shapes.beyond_bounds || !within.is_finite();
   // The faces of the bounds lie outside of what bounds it.
   const Vec3d room = (box.hi - box.lo) * 0.01 + Vec3d{1e-6, 1e-6, 1e-6};
   const Extent cut = box.meet(kAll);
   box = {box.lo - room, box.hi + room};
-  if (ends_at_reach && !shapes.beyond_bounds) box = box.meet(kAll);
+  if (!within.is_finite()) box = box.meet(kAll);
   tree.put(keys, "bounds", box_node(box));
   shapes.solid = operand || shapes.beyond_bounds;
   if (!shapes.solid) tree.put(keys, "open", tree.flag(where, true));
