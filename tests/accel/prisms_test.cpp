@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "accel/point_query.h"
 #include "tests/accel/all_crossings.h"
 #include "verify/cases/kernel_cases.h"
+#include "verify/checks/exact.h"
 #include "verify/oracles/exact.h"
 
 namespace oktett::prisms_test {
@@ -101,6 +105,18 @@ TEST(Prisms, ThreeSidesInOnePlaneAreCrossedInTurn) {
     const std::vector<Hit> from_inside = crossings(s, {0.425f, 0.5f, 0.2f}, {-1, 0, 0});
     ASSERT_EQ(from_inside.size(), 5u);
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(from_inside[i].v, i % 2 == 0 ? 1 : -1);
+  }
+}
+
+/// Random outlines on a coarse grid of which sides lie on each other in part: where there are two, a hit is
+/// allowed, though rounded to float it may lie beside them.
+TEST(Prisms, SidesOnEachOtherInPart) {
+  const std::vector<std::string> names = exact_oracle_names();
+  const auto form = static_cast<std::size_t>(std::ranges::find(names, "prism") - names.begin());
+  for (const std::uint64_t trial : {2903, 13154, 18649, 20418}) {
+    const ExactTally tally = verify_exact(form, kRaysPerShape, available_isas(), trial);
+    EXPECT_EQ(tally.wrong(), 0u) << tally.failure;
+    EXPECT_GT(tally.touched, 0u);
   }
 }
 

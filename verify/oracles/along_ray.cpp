@@ -147,10 +147,11 @@ AlongRay::Crossing AlongRay::crosses(long double t) const {
     l = r, fl = fr;
   }
   if (hides_at_cliff(cliff, cliff + step) || hides_at_tip(tip - step, tip + step)) return Crossing::nearly;
-  // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
+  // Touching: |f| has its least value hereabouts, small against what it is a little farther off. As t is
+  // rounded to float, that may be beside it.
   const long double off = 0x1p-14L * size_,
                     rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
-  return std::abs(here) <= 0x1p-8L * rim ? Crossing::nearly : Crossing::no;
+  return std::min(least, std::abs(here)) <= 0x1p-8L * rim ? Crossing::nearly : Crossing::no;
 }
 
 /// Whether f, of one sign at l and r, has the other one next to where it is steepest.
