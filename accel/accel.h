@@ -80,7 +80,7 @@ struct CsgExpression {
   std::vector<Geometry> solids;         ///< of CsgOp::operand: it is their union
   std::vector<CsgExpression> children;  ///< of all others: what is combined, in order
   /// Of the root: only rays that run through each of these solids meet the combination, wherever on them it
-  /// lies. Points know nothing of them. Windows of expressions inside others do not count.
+  /// lies. They do not count for inside() and nearest points, nor where an expression is part of another.
   std::vector<Geometry> windows{};
 };
 

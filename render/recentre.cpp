@@ -149,7 +149,7 @@ class Recentring {
       csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
       if (place && csg->windows != nullptr) {
         std::vector<Object> windows = *csg->windows;
-        for (Object& window : windows) window.transform = Affine::translation(-*place) * window.transform;
+        move(windows, *place);
         csg->windows = std::make_shared<const std::vector<Object>>(std::move(windows));
       }
     } else if (const auto* const instance = std::get_if<InstanceShape>(&object.shape)) {

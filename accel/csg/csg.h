@@ -31,7 +31,7 @@ Box csg_bounds(const CsgItem& csg);
 /// ray.tmin on.
 bool runs_inside(const Accel& accel, std::uint32_t geometry, const Ray& ray);
 
-/// Whether a ray, which does not end at tmax for this, runs through all windows of the combination.
+/// Whether a ray, taken from tmin to infinity, runs through all windows of the combination.
 bool runs_through_windows(const CsgItem& csg, const Ray& ray);
 
 /// The distance within which crossings from `t` on count as coincident: it covers the rounding of t to float

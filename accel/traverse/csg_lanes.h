@@ -450,7 +450,7 @@ OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayStat
 /// Appends every crossing of a ray with a combination.
 template <class A>
 OKTETT_NOINLINE void collect_csg(const CsgItem& csg, const Ray& ray, HitList& hits) {
-  // Windows hide: where no surface is looked for, but an inside, they do not count.
+  // Windows do not count where the crossings are to tell what is inside.
   if (!csg.windows.empty() && !hits.keeps_unseen && !runs_through_windows(csg, ray)) return;
   CsgSweep sweep;
   if (gather_solids<A>(csg, ray, sweep.solids())) sweep.all(csg, ray, hits);

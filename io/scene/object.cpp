@@ -311,6 +311,16 @@ class ObjectReader {
     require_solid(load_, object, "only solids can have a material with an interior");
   }
 
+  /// What an operand or a window consists of.
+  std::vector<Object> read_operand(const YamlNode& node, const Surroundings& outer) {
+    std::vector<Object> members;
+    ObjectReader reader(load_, members, defining_, name_);
+    reader.is_operand_ = true;
+    reader.read(node, outer);
+    levels_ = std::max(levels_, reader.levels_);
+    return members;
+  }
+
   std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
@@ -320,11 +330,7 @@ class ObjectReader {
     std::vector<Object> solids;
     bool is_nothing = false;
     for (const YamlNode* node : nodes) {
-      std::vector<Object> members;
-      ObjectReader reader(load_, members, defining_, name_);
-      reader.is_operand_ = true;
-      reader.read(*node, inner);
-      levels_ = std::max(levels_, reader.levels_);
+      std::vector<Object> members = read_operand(*node, inner);
       for (const Object& member : members)
         attempt(*node, [&] {
           require_solid(load_, member, "only solids can be combined");
@@ -356,21 +362,17 @@ class ObjectReader {
     const auto nodes = list_items(list, "seen_through");
     if (nodes.empty()) throw Error(list.where(), "seen_through needs at least one solid");
     std::vector<Object> windows;
-    ObjectReader reader(load_, windows, defining_, name_);
-    reader.is_operand_ = true;
-    for (const YamlNode* node : nodes) {
-      const std::size_t first = windows.size();
-      reader.read(*node, {});
-      for (std::size_t i = first; i < windows.size(); ++i)
+    for (const YamlNode* node : nodes)
+      for (Object& window : read_operand(*node, {}))
         attempt(*node, [&] {
-          windows[i].material = kNoId;
-          require_solid(load_, windows[i], "only solids can be seen through");
-          if (holds_triangles(windows[i]))
+          require_solid(load_, window, "only solids can be seen through");
+          if (holds_triangles(window))
             throw Error(node->where(),
                         "meshes and instances cannot be seen through; expected a shape such as a sphere or a "
                         "box");
+          window.material = kNoId;
+          windows.push_back(std::move(window));
         });
-    }
     return windows;
   }
 

@@ -484,7 +484,7 @@ TEST(Csg, ErrorsOfPositionsHoldTheReach) {
 }
 
 /// A ray meets all of a combination or nothing, by whether it runs through the windows, wherever they are on
-/// it; with meshes among the solids, too, which are swept one ray after the other.
+/// it.
 TEST(Csg, WindowsHideWhatTheyDoNotCut) {
   CsgExpression e = combine(CsgOp::unite, {cube({0, -4, -4}, {1, 4, 4}, 0), ball({3, 0, 0}, 1, 1)});
   e.windows = {ball({-2, 0, 0}, 1, 0)};

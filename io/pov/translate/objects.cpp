@@ -450,7 +450,7 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
                 {nodes.size() == 1 ? nodes[0] : list_node(block.where, "group", nodes), solid, false}, false);
 }
 
-/// Transforms that follow those that an object of scene files has.
+/// Adds transforms behind those that an object of scene files has.
 void ObjectWriter::add_moves(Node object, const Moves& moves, const Place& where) {
   if (moves.empty()) return;
   const bool has_own =

@@ -144,9 +144,10 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
   const Extent within = limits.within.meet(limits.bounded);
   Extent box = within;
   Shapes shapes;
-  if (!limits.within.is_finite()) {
+  const bool has_windows = within.is_finite() && !limits.within.is_finite() && limits.are_windows && !operand;
+  if (has_windows || !within.is_finite()) {
     const Extent zeros = bounds_of(terms, operand);
-    shapes.beyond_bounds = within.is_finite() && limits.are_windows && !operand && reaches_end(zeros);
+    shapes.beyond_bounds = has_windows && reaches_end(zeros);
     if (shapes.beyond_bounds || !within.is_finite()) box = zeros;
   }
   // The faces of the bounds lie outside of what bounds it.
