@@ -1,9 +1,10 @@
 #pragma once
 /// \file Crossings of a function along one ray, isolated as in march.h, with pieces of the ray in lanes.
 ///
-/// A piece that tells nothing is divided into eight, whatever the number of lanes, so that each instruction
-/// set finds the same bits, and a ray that comes alone fills the lanes. The function is bounded, and over(t)
-/// as narrow as the mean value form.
+/// A piece that tells nothing is divided into eight, in eight lanes of each instruction set, so that all find
+/// the same bits, and a ray that comes alone fills the lanes. The function is bounded, and over(t) as narrow
+/// as the mean value form. A field may have over_roughly(ends) and at_roughly(places), which enclose the same
+/// in eight lanes of floats on pieces with these nine ends and at eight places: they cost less and tell less.
 
 #include <algorithm>
 
@@ -11,8 +12,8 @@
 
 namespace oktett::interval {
 
-/// The crossings of `field`, in lanes of D, with one ray: the first K from a to b. What is not told apart
-/// from b may be between b and `limit`. The least piece is 2^-44 of `range`, as in march().
+/// The crossings of `field`, in eight lanes of D, with one ray: the first K from a to b. What is not told
+/// apart from b may be between b and `limit`. The least piece is 2^-44 of `range`, as in march().
 template <int K, class Field, class D>
 class PieceMarch {
  public:
@@ -40,14 +41,33 @@ class PieceMarch {
   double up_to() const { return count_ < K ? roots::kNoRoot : end_; }
 
  private:
-  static constexpr int kPieces = 8, kMaxRounds = 64, W = D::kWidth;
-  static_assert(kPieces % W == 0);
+  static constexpr int kPieces = D::kWidth, kMaxRounds = 64;
+  static constexpr unsigned kAll = (1u << kPieces) - 1;
+  static constexpr bool kHasRough = requires(const Field& f, const double* ends) { f.over_roughly(ends); };
+  /// Pieces longer than this, in multiples of the least, are asked roughly.
+  static constexpr double kLong = 0x1p30;
+  static_assert(kPieces == 8);
 
-  /// What the function says about pieces in lanes.
+  /// What the function says about pieces, whose bits are those of their lanes.
   struct Answer {
-    double sign[W];   ///< -1 or 1 where it is certain
-    unsigned turns;   ///< where that is the sign at the end of a piece in which it may turn once
-    unsigned passed;  ///< where nothing more can be told, so that the piece is a gap
+    unsigned positive, negative;  ///< where it is so for certain
+    unsigned turns;               ///< where that is so at the end of a piece in which it may turn once
+    unsigned passed;              ///< where nothing more can be told, so that the piece is a gap
+  };
+  /// The signs at places that are certain.
+  struct Signs {
+    unsigned positive, negative;
+    template <class T>
+    explicit OKTETT_INLINE Signs(const Interval<T>& f)
+        : positive(bits(T(0) < f.lo)), negative(bits(f.hi < T(0))) {}
+    OKTETT_INLINE Signs(unsigned p, unsigned n) : positive(p), negative(n) {}
+    OKTETT_INLINE unsigned certain() const { return positive | negative; }
+    /// At the ends of pieces, by those of the next ones.
+    OKTETT_INLINE Signs of_next() const { return {positive >> 1, negative >> 1}; }
+    /// What these tell of `where`.
+    OKTETT_INLINE void add(const Signs& s, unsigned where) {
+      positive |= s.positive & where, negative |= s.negative & where;
+    }
   };
 
   OKTETT_NOINLINE void divide(double a, double b) {
@@ -59,56 +79,72 @@ class PieceMarch {
     double ends[kPieces + 1];
     for (int i = 0; i < kPieces; ++i) ends[i] = a + (b - a) * (i * (1.0 / kPieces));
     ends[kPieces] = b;
-    for (int first = 0; first < kPieces; first += W) {
-      const Answer answer = ask(ends + first);
-      for (int i = 0; i < W && !done_; ++i) {
-        const double l = ends[first + i], r = ends[first + i + 1];
-        if (answer.sign[i] != 0)
-          know(answer.sign[i], answer.turns >> i & 1 ? r : l, r);
-        else if (answer.passed >> i & 1)
-          end_ = r;
-        else
-          divide(l, r);
-      }
-      if (done_) return;
+    Answer answer;
+    if constexpr (kHasRough)
+      answer = b - a > least_ * (kLong * kPieces) ? ask_roughly(ends) : ask(ends);
+    else
+      answer = ask(ends);
+    for (int i = 0; i < kPieces && !done_; ++i) {
+      const unsigned piece = 1u << i;
+      const double l = ends[i], r = ends[i + 1];
+      if ((answer.positive | answer.negative) & piece)
+        know(answer.positive & piece ? 1 : -1, answer.turns & piece ? r : l, r);
+      else if (answer.passed & piece)
+        end_ = r;
+      else
+        divide(l, r);
     }
   }
 
-  OKTETT_INLINE Answer ask(const double* ends) {
-    const D zero(0.0), l = D::load(ends), r = D::load(ends + 1), width = r - l, m = l + width * D(0.5);
-    const Dual<Interval<D>> f = field_.over({l, r});
-    D sign = certain_sign(f.v);
-    auto open = sign == zero;
-    Answer answer;
-    answer.turns = answer.passed = 0;
-    if (any(open)) {
-      // Where the first piece has one sign, so has its beginning.
-      if (sign_ == 0 && ends[0] == begin_ && (bits(open) & 1)) {
-        double at_begin[W];
-        certain_sign(field_.at(l)).store(at_begin);
-        sign_ = at_begin[0];
-      }
-      // Rounding matters in short pieces alone; for longer ones the middle would tell nothing new.
-      const auto asked = open & (width <= D(least_ * 0x1p28));
-      auto noise = open & ~open;
-      if (any(asked)) {
-        const Interval<D> at_m = field_.at(m), mean = at_m + f.d * (Interval<D>(l, r) - Interval<D>(m));
-        const Interval<D> value = select(asked & mean.is_bounded(), intersect(f.v, mean), f.v);
-        sign = certain_sign(value);
-        open = sign == zero;
-        noise = open & asked & (certain_sign(at_m) == zero) &
-                (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
-      }
-      const auto monotone = open & ((zero < f.d.lo) | (f.d.hi < zero));
-      if (any(monotone)) {
-        const D at_end = certain_sign(field_.at(r));
-        sign = select(monotone, at_end, sign);
-        answer.turns = bits(monotone);
-      }
-      answer.passed = bits(noise | monotone | (width <= D(least_)) | ~((l < m) & (m < r)));
+  /// Of long pieces, by what costs less.
+  OKTETT_INLINE Answer ask_roughly(const double* ends) {
+    const auto f = field_.over_roughly(ends);
+    Signs known(f.v);
+    const unsigned open = ~known.certain() & kAll;
+    if (open == 0) return {known.positive, known.negative, 0, 0};
+    if (open & 1) ask_beginning(ends);
+    const unsigned turns = open & Signs(f.d).certain();
+    if (turns != 0) {
+      Signs at_end = known.of_next();
+      if (turns & ~at_end.certain()) at_end.add(Signs(field_.at_roughly(ends + 1)), turns);
+      ask_ends(ends, turns, at_end, known);
     }
-    sign.store(answer.sign);
-    return answer;
+    return {known.positive, known.negative, turns, turns};
+  }
+
+  OKTETT_INLINE Answer ask(const double* ends) {
+    const D l = D::load(ends), r = D::load(ends + 1), width = r - l, m = l + width * D(0.5);
+    const Dual<Interval<D>> f = field_.over({l, r});
+    Signs known(f.v);
+    unsigned open = ~known.certain() & kAll, noise = 0;
+    if (open == 0) return {known.positive, known.negative, 0, 0};
+    if (open & 1) ask_beginning(ends);
+    // Rounding matters in short pieces alone; for longer ones the middle would tell nothing new.
+    const auto asked = D::M::from_bits(open) & (width <= D(least_ * 0x1p28));
+    if (any(asked)) {
+      const Interval<D> at_m = field_.at(m), mean = at_m + f.d * (Interval<D>(l, r) - Interval<D>(m));
+      const Interval<D> value = intersect(f.v, mean);
+      known.add(Signs(value), bits(asked & mean.is_bounded()));
+      open &= ~known.certain();
+      noise = open & ~Signs(at_m).certain() &
+              bits(asked & (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16)));
+    }
+    const unsigned turns = open & Signs(f.d).certain();
+    if (turns != 0) ask_ends(ends, turns, known.of_next(), known);
+    const unsigned passed = noise | turns | bits((width <= D(least_)) | ~((l < m) & (m < r)));
+    return {known.positive, known.negative, turns, passed};
+  }
+
+  /// Where the first piece has one sign, so has its beginning.
+  OKTETT_INLINE void ask_beginning(const double* ends) {
+    if (sign_ != 0 || ends[0] != begin_) return;
+    const Signs at(field_.at(D::load(ends)));
+    sign_ = at.positive & 1 ? 1 : at.negative & 1 ? -1 : 0;
+  }
+  /// Makes the signs at the ends of the pieces `turns` known, as far as they are not yet.
+  OKTETT_INLINE void ask_ends(const double* ends, unsigned turns, Signs at_end, Signs& known) {
+    if (turns & ~at_end.certain()) at_end.add(Signs(field_.at(D::load(ends + 1))), turns);
+    known.add(at_end, turns);
   }
 
   /// The crossing in a bracket, which becomes shorter until it is below `tolerance`: eight places are asked
@@ -130,10 +166,8 @@ class PieceMarch {
       } else {
         for (int i = 0; i < kPieces; ++i) x[i] = l + width * ((i + 1) * (1.0 / (kPieces + 1)));
       }
-      for (int first = 0; first < kPieces; first += W) {
-        const Interval<D> f = field_.at(D::load(x + first));
-        certain_sign(f).store(sign + first), middle(f).store(value + first);
-      }
+      const Interval<D> f = field_.at(D::load(x));
+      certain_sign(f).store(sign), middle(f).store(value);
       // The signs at the ends are known, though what is asked there may not tell them.
       int k = 0;
       while (k < kPieces && (x[k] <= l || (x[k] < r && sign[k] == found.before))) ++k;

@@ -25,6 +25,24 @@
 
 namespace oktett {
 
+/// What describes a set, in numbers of T, and bounds on what their rounding does.
+///
+/// Those of one iteration of what has not escaped: with |z| <= R + r and |w| half <= r the roundings of
+/// squares, u (|z|^2 + |c| + |z| |w| half), are below
+///   u (R^2 + |c|) + 3 u R r + 2 u r^2 = least + linear r + 2 u r^2,
+/// and those of cubes, u (|z|^3 + |c| + |z|^2 |w| half), below
+///   u (R^3 + |c|) + 4 u R^2 r + 5 u R r^2 + 2 u r^3 = least + linear r + quadratic r^2 + 2 u r^3.
+/// What their last terms add to r^2 and r^3 is in `product`.
+template <class T>
+struct JuliaNumbers {
+  T c[4], slice;
+  T limit;    ///< R^2
+  T outside;  ///< what is farther out has left R, whatever its square is rounded to
+  T round;    ///< u
+  T product;  ///< K or K^2, rounded up
+  T least, linear, quadratic;
+};
+
 struct JuliaElement {
   double c[4];
   double slice;
@@ -33,7 +51,16 @@ struct JuliaElement {
   int power;
   bool hypercomplex;
   double size;  ///< of the box about all cells
+  JuliaNumbers<double> in_doubles;
+  JuliaNumbers<float> in_floats;
 
+  template <class T>
+  const JuliaNumbers<T>& numbers() const {
+    if constexpr (std::is_same_v<T, float>)
+      return in_floats;
+    else
+      return in_doubles;
+  }
   /// |ab| <= product() |a| |b|.
   double product() const { return hypercomplex ? 1.4142135623730952 : 1.0; }
 };
@@ -69,7 +96,8 @@ struct JuliaNumber {
             by * k + m * w.k};
   }
   /// The image.
-  OKTETT_INLINE JuliaNumber next(const JuliaElement& e) const {
+  template <class T>
+  OKTETT_INLINE JuliaNumber next(const JuliaElement& e, const T (&c)[4]) const {
     const D two(2.0), three(3.0);
     JuliaNumber q;
     if (e.hypercomplex) {
@@ -82,7 +110,7 @@ struct JuliaNumber {
       const D s = (i * i + j * j) + k * k, m = three * (r * r) - s;
       q = {r * (r * r - three * s), m * i, m * j, m * k};
     }
-    return {q.r + D(e.c[0]), q.i + D(e.c[1]), q.j + D(e.c[2]), q.k + D(e.c[3])};
+    return {q.r + D(c[0]), q.i + D(c[1]), q.j + D(c[2]), q.k + D(c[3])};
   }
   template <class M>
   OKTETT_INLINE void set(const M& where, const JuliaNumber& q) {
@@ -91,48 +119,45 @@ struct JuliaNumber {
   }
 };
 
-/// |z_n|^2 - R^2 along rays.
+/// |z_n|^2 - R^2 along a ray, in lanes of D.
 template <class D>
-struct JuliaField {
-  const JuliaElement& e;
-  Vec3<D> o, d;
+class JuliaField {
+ public:
+  using T = typename D::Element;
 
-  /// Roundings are below this, relative; one iteration makes fewer than eight, of cubes fewer than 32.
-  static constexpr double kRound = 0x1p-49, kRoundOfCubes = 0x1p-47;
-  static constexpr double kHuge = 1e40;
-
-  using Number = JuliaNumber<D>;
-
-  /// A little more than the root: roots of floats take a third of the time of those of doubles.
-  static OKTETT_INLINE D root_above(const D& square) {
-    return to_double(sqrt(to_float(square))) * D(1 + 0x1p-22) + D(0x1p-62);
-  }
+  OKTETT_INLINE JuliaField(const JuliaElement& e, const Vec3d& o, const Vec3d& d)
+      : e_(e),
+        n_(e.numbers<T>()),
+        o_{D(static_cast<T>(o.x)), D(static_cast<T>(o.y)), D(static_cast<T>(o.z))},
+        d_{D(static_cast<T>(d.x)), D(static_cast<T>(d.y)), D(static_cast<T>(d.z))},
+        far_(root_above((o_.x * o_.x + o_.y * o_.y) + o_.z * o_.z)) {}
 
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
-    const D zero(0.0), two(2.0), three(3.0), u(round()), limit(e.radius * e.radius);
-    Number z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
-    D eps = first_error(z), phi = zero, slope(0.0), r(0.0);
-    Escape escape(e);
-    const Rounding rounding(e);
+    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product);
+    const D least(n_.least), linear(n_.linear), quadratic(n_.quadratic);
+    Number z = place(m), w{d_.x, d_.y, d_.z, D(0)};
+    // What rounding makes of the direction.
+    D slope = root_above(w.norm2()), phi = u * slope, eps = first_error(z) + phi * half, r(0);
+    Escape escape(n_);
     for (int n = 0;; ++n) {
       const D zz = z.norm2(), length = root_above(zz);
       slope = root_above(w.norm2()), r = slope * half + eps;
       // What has escaped goes on as anything: to hold it where it was would make each step wait. Where eps or
       // phi become too great they stay so.
       escape.look(zz, r);
-      if (n == e.iterations || escape.all()) break;
-      const D all = slope + phi, rounded = phi + rounding.of_slope * slope;
-      if (e.power == 2) {
-        eps = rounding.product * (two * length * eps + r * (r + rounding.linear)) + rounding.least;
-        phi = two * rounding.product * (length * rounded + r * all);
+      if (n == e_.iterations || escape.all()) break;
+      const D all = slope + phi, rounded = phi + u * slope;
+      if (e_.power == 2) {
+        eps = product * (two * length * eps + r * (r + linear)) + least;
+        phi = two * product * (length * rounded + r * all);
       } else {
-        const D cubic = (three * length + (r + rounding.quadratic)) * r + rounding.linear;
-        eps = rounding.product * (three * zz * eps + cubic * r) + rounding.least;
-        phi = three * rounding.product * (zz * rounded + (two * length + r) * r * all);
+        const D cubic = (three * length + (r + quadratic)) * r + linear;
+        eps = product * (three * zz * eps + cubic * r) + least;
+        phi = three * product * (zz * rounded + (two * length + r) * r * all);
       }
-      w = z.next_slope(e, w), z = z.next(e);
+      w = z.next_slope(e_, w), z = z.next(e_, n_.c);
     }
     const D zz = z.norm2(), length = root_above(zz), by_h = z.twice_along(w);
     const D off = abs(by_h) * half + two * length * eps + u * (zz + limit) + u * length * slope * half;
@@ -143,68 +168,65 @@ struct JuliaField {
     return {f, {select(told, by_h - turn, -huge), select(told, by_h + turn, huge)}};
   }
 
+  /// Those of a piece.
   OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const {
-    const D m = s.lo + (s.hi - s.lo) * D(0.5);
-    return about(m, max(s.hi - m, m - s.lo) * D(1 + 0x1p-50));
+    const D m = s.lo + (s.hi - s.lo) * D(T(0.5));
+    return about(m, max(s.hi - m, m - s.lo) * D(kAboveOne));
   }
+
   /// The value of about(s, 0), without the derivative and what it takes.
   OKTETT_INLINE Interval<D> at(const D& s) const {
-    const D two(2.0), three(3.0), u(round()), limit(e.radius * e.radius);
-    Number z{o.x + s * d.x, o.y + s * d.y, o.z + s * d.z, D(e.slice)};
+    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product);
+    const D least(n_.least), linear(n_.linear), quadratic(n_.quadratic);
+    Number z = place(s);
     D zz = z.norm2(), length = root_above(zz), eps = first_error(z);
-    Escape escape(e);
-    const Rounding rounding(e);
+    Escape escape(n_);
     for (int n = 0;; ++n) {
       escape.look(zz, eps);
-      if (n == e.iterations || escape.all()) break;
-      const D factor =
-          e.power == 2 ? two * length + (eps + rounding.linear)
-                       : three * zz + ((three * length + (eps + rounding.quadratic)) * eps + rounding.linear);
-      eps = rounding.product * (factor * eps) + rounding.least;
-      z = z.next(e);
+      if (n == e_.iterations || escape.all()) break;
+      const D factor = e_.power == 2 ? two * length + (eps + linear)
+                                     : three * zz + ((three * length + (eps + quadratic)) * eps + linear);
+      eps = product * (factor * eps) + least;
+      z = z.next(e_, n_.c);
       zz = z.norm2(), length = root_above(zz);
     }
     const D value = zz - limit, off = two * length * eps + u * (zz + limit);
     return escape.enclosure(~escape.escaped() & (eps < D(kHuge)), value - off, value + off + eps * eps);
   }
 
+  /// A little more than 1.
+  static constexpr T kAboveOne = std::is_same_v<T, float> ? 1 + 0x1p-22 : 1 + 0x1p-50;
+
  private:
-  double round() const { return e.power == 2 ? kRound : kRoundOfCubes; }
-  /// What rounding makes of the point itself.
-  OKTETT_INLINE D first_error(const Number& z) const {
-    return D(round()) * (root_above((o.x * o.x + o.y * o.y) + o.z * o.z) + root_above(z.norm2()));
+  static constexpr T kHuge = std::is_same_v<T, float> ? 0x1p30 : 1e40;
+
+  using Number = JuliaNumber<D>;
+
+  /// A little more than the root: roots of floats take a third of the time of those of doubles.
+  static OKTETT_INLINE D root_above(const D& square) {
+    const D above(T(1 + 0x1p-22)), tiny(T(0x1p-62));
+    if constexpr (std::is_same_v<T, float>)
+      return sqrt(square) * above + tiny;
+    else
+      return to_double(sqrt(to_float(square))) * above + tiny;
   }
 
-  /// Bounds on the roundings of an iteration of what has not escaped: with |z| <= R + r and
-  /// |w| half <= r those of squares, u (|z|^2 + |c| + |z| |w| half), are below
-  ///   u (R^2 + |c|) + 3 u R r + 2 u r^2,
-  /// and those of cubes, u (|z|^3 + |c| + |z|^2 |w| half), below
-  ///   u (R^3 + |c|) + 4 u R^2 r + 5 u R r^2 + 2 u r^3.
-  /// What their last terms add to r^2 and r^3 is in the product.
-  struct Rounding {
-    D product, of_slope, least, linear, quadratic;
-    explicit OKTETT_INLINE Rounding(const JuliaElement& e) {
-      const double u = e.power == 2 ? kRound : kRoundOfCubes, R = e.radius * (1 + 0x1p-20);
-      const double c = std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
-      const double k = e.product() * (1 + 4 * u);
-      product = D(e.power == 2 ? k : k * e.product());
-      of_slope = D(u);
-      least = D(u * ((e.power == 2 ? R * R : R * R * R) + c));
-      linear = D(e.power == 2 ? 3 * u * R : 4 * u * R * R);
-      quadratic = D(5 * u * R);
-    }
-  };
+  OKTETT_INLINE Number place(const D& s) const {
+    return {o_.x + s * d_.x, o_.y + s * d_.y, o_.z + s * d_.z, D(n_.slice)};
+  }
+  /// What rounding makes of the place itself, and of the numbers that it is made of.
+  OKTETT_INLINE D first_error(const Number& z) const { return D(n_.round) * (far_ + root_above(z.norm2())); }
 
   /// Which points surely leave the radius R, and by how much at least where they first do.
   struct Escape {
     D by, radius;  ///< `by` is positive where they do
-    explicit OKTETT_INLINE Escape(const JuliaElement& e) : by(0.0), radius(e.radius * (1 + 0x1p-40)) {}
+    explicit OKTETT_INLINE Escape(const JuliaNumbers<T>& n) : by(0), radius(n.outside) {}
     /// An iterate is within r of one of the square zz.
     OKTETT_INLINE void look(const D& zz, const D& r) {
       const D out = radius + r;
-      by = select(escaped(), by, zz - out * out * D(1 + 0x1p-50));
+      by = select(escaped(), by, zz - out * out * D(kAboveOne));
     }
-    OKTETT_INLINE typename D::M escaped() const { return D(0.0) < by; }
+    OKTETT_INLINE typename D::M escaped() const { return D(0) < by; }
     OKTETT_INLINE bool all() const { return none(~escaped()); }
     /// [low, high] where that is told, else what is known of what has escaped, or nothing.
     OKTETT_INLINE Interval<D> enclosure(const typename D::M& told, const D& low, const D& high) const {
@@ -213,6 +235,40 @@ struct JuliaField {
               select(told, high, select(escaped(), outside, huge))};
     }
   };
+
+  const JuliaElement& e_;
+  const JuliaNumbers<T>& n_;
+  Vec3<D> o_, d_;
+  D far_;  ///< at least |o|
+};
+
+/// The same at places that are not negative; roughly by floats: half of the registers, and roots without
+/// conversions.
+template <class D>
+class JuliaRayField {
+ public:
+  using F = Simd<float, D::kWidth, typename D::Isa>;
+
+  OKTETT_INLINE JuliaRayField(const JuliaElement& e, const Vec3d& o, const Vec3d& d)
+      : field_(e, o, d), rough_(e, o, d) {}
+
+  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const { return field_.over(s); }
+  OKTETT_INLINE Interval<D> at(const D& s) const { return field_.at(s); }
+  OKTETT_INLINE Dual<Interval<F>> over_roughly(const double* ends) const {
+    constexpr int n = D::kWidth;
+    double middle[n];
+    for (int i = 0; i < n; ++i) middle[i] = ends[i] + (ends[i + 1] - ends[i]) * 0.5;
+    // Also what is lost where the middles become floats.
+    const double half = (ends[n] - ends[0]) * ((1 + 0x1p-20) / (2 * n)) + (ends[0] + ends[n]) * 0x1p-23;
+    return rough_.about(to_float(D::load(middle)), F(static_cast<float>(half)));
+  }
+  OKTETT_INLINE Interval<F> at_roughly(const double* places) const {
+    return rough_.at(to_float(D::load(places)));
+  }
+
+ private:
+  JuliaField<D> field_;
+  JuliaField<F> rough_;
 };
 
 struct JuliaPool : ExactPool<JuliaElement> {
@@ -234,7 +290,7 @@ struct Julia {
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
     using A = typename D::Isa;
-    using Pieces = Simd<double, kDoubleLanes<A>, A>;
+    using Field = JuliaRayField<Simd<double, 8, A>>;
     const JuliaElement& e = pool.elements[cell.element];
     const LineColumns<D> rays(line, range);
     CrossingColumns<K, D> lists;
@@ -242,9 +298,9 @@ struct Julia {
       const int lane = __builtin_ctz(rest);
       const double a = rays.a(lane), length = rays.b(lane) - a;
       const Vec3d d = rays.d(lane);
-      const JuliaField<Pieces> field{e, broadcast<Pieces>(rays.o(lane) + d * a), broadcast<Pieces>(d)};
+      const Field field(e, rays.o(lane) + d * a, d);
       const double size = std::max(length, e.size / std::sqrt(dot(d, d)));
-      const interval::PieceMarch<K, JuliaField<Pieces>, Pieces> march(field, 0, length, length, size);
+      const interval::PieceMarch<K, Field, Simd<double, 8, A>> march(field, 0, length, length, size);
       int k = 0;
       march.each(size * 0x1p-42, [&](double x, double before) {
         lists.t[k][lane] = a + x, lists.turn[k][lane] = -before, ++k;
@@ -268,7 +324,7 @@ struct Julia {
       const auto stays = z.norm2() < D(0x1p20);
       if (none(stays)) break;
       for (Q& v : w) v.set(stays, z.next_slope(e, v));
-      z.set(stays, z.next(e));
+      z.set(stays, z.next(e, e.c));
     }
     value = z.norm2() - D(e.radius * e.radius);
     gradient = {z.twice_along(w[0]), z.twice_along(w[1]), z.twice_along(w[2])};

@@ -43,29 +43,44 @@ struct Found {
   int evaluations;
 };
 
-template <int W, int K = kRoom>
-Found find(const std::vector<double>& roots, double factor, double a, double b, double limit) {
-  using D = Simd<double, W, ScalarIsa>;
-  const Product<D> product{roots, factor};
-  const interval::PieceMarch<K, Product<D>, D> march(product, a, b, limit, b - a);
+using D = Simd<double, 8, ScalarIsa>;
+
+/// The same, which also tells less with less: floats about what is known to a few bits.
+struct RoughProduct : Product<D> {
+  using F = Simd<float, 8, ScalarIsa>;
+  static Interval<F> roughly(const Interval<D>& f) {
+    const D off = (abs(f.lo) + abs(f.hi)) * D(0x1p-4) + D(1e-30);
+    return {to_float(f.lo - off), to_float(f.hi + off)};
+  }
+  Dual<Interval<F>> over_roughly(const double* ends) const {
+    const Dual<Interval<D>> f = over({D::load(ends), D::load(ends + 1)});
+    return {roughly(f.v), roughly(f.d)};
+  }
+  Interval<F> at_roughly(const double* places) const { return roughly(at(D::load(places))); }
+};
+
+template <int K, class Field>
+Found find_in(const Field& field, double a, double b, double limit) {
+  const interval::PieceMarch<K, Field, D> march(field, a, b, limit, b - a);
   Found found;
   march.each((b - a) * 0x1p-42,
              [&](double x, double before) { found.t.push_back(x), found.turn.push_back(-before); });
-  found.up_to = march.up_to(), found.evaluations = product.evaluations;
+  found.up_to = march.up_to(), found.evaluations = field.evaluations;
   return found;
 }
 
-/// What all numbers of lanes find.
-Found find_alike(const std::vector<double>& roots, double factor = 1, double a = 0, double b = 1,
-                 double limit = 0) {
+/// What is found with and without the rough enclosure.
+template <int K = kRoom>
+Found find(const std::vector<double>& roots, double factor = 1, double a = 0, double b = 1,
+           double limit = 0) {
   limit = std::max(b, limit);
-  const Found one = find<1>(roots, factor, a, b, limit), four = find<4>(roots, factor, a, b, limit),
-              eight = find<8>(roots, factor, a, b, limit);
-  EXPECT_EQ(one.t, four.t);
-  EXPECT_EQ(one.t, eight.t);
-  EXPECT_EQ(one.turn, eight.turn);
-  EXPECT_EQ(one.up_to, eight.up_to);
-  return eight;
+  const Found found = find_in<K>(Product<D>{roots, factor}, a, b, limit);
+  const Found roughly = find_in<K>(RoughProduct{{roots, factor}}, a, b, limit);
+  EXPECT_EQ(found.t.size(), roughly.t.size());
+  for (std::size_t i = 0; i < std::min(found.t.size(), roughly.t.size()); ++i)
+    EXPECT_NEAR(found.t[i], roughly.t[i], 1e-4);
+  EXPECT_EQ(found.turn, roughly.turn);
+  return found;
 }
 
 void expect_roots(const Found& found, const std::vector<double>& roots, double first_turn,
@@ -78,13 +93,13 @@ void expect_roots(const Found& found, const std::vector<double>& roots, double f
 }
 
 TEST(PieceMarch, FindsKnownRoots) {
-  expect_roots(find_alike({0.3}), {0.3}, 1);
-  expect_roots(find_alike({0.1, 0.5, 0.7, 0.70001, 0.9}), {0.1, 0.5, 0.7, 0.70001, 0.9}, 1);
-  expect_roots(find_alike({0.5, 0.5 + 1e-6}, -1), {0.5, 0.5 + 1e-6}, 1, 1e-9);
-  expect_roots(find_alike({-1, 2}), {}, 1);
-  expect_roots(find_alike({}), {}, 1);
-  expect_roots(find_alike({0.3}, 1, 0.5, 0.2), {}, 1);
-  expect_roots(find_alike({0.3}, 1, 0.2, 0.2), {}, 1);
+  expect_roots(find({0.3}), {0.3}, 1);
+  expect_roots(find({0.1, 0.5, 0.7, 0.70001, 0.9}), {0.1, 0.5, 0.7, 0.70001, 0.9}, 1);
+  expect_roots(find({0.5, 0.5 + 1e-6}, -1), {0.5, 0.5 + 1e-6}, 1, 1e-9);
+  expect_roots(find({-1, 2}), {}, 1);
+  expect_roots(find({}), {}, 1);
+  expect_roots(find({0.3}, 1, 0.5, 0.2), {}, 1);
+  expect_roots(find({0.3}, 1, 0.2, 0.2), {}, 1);
 }
 
 /// Random roots, far apart or close together, are all found, as far as doubles can resolve them.
@@ -95,26 +110,26 @@ TEST(PieceMarch, FindsRandomRoots) {
     const std::vector<double> roots = test::random_roots(random);
     if (test::least_gap(roots) < 1e-5 || (!roots.empty() && roots.back() >= 1)) continue;
     ++checked;
-    expect_roots(find_alike(roots), roots, roots.size() % 2 == 1 ? 1 : -1, 1e-9);
+    expect_roots(find(roots), roots, roots.size() % 2 == 1 ? 1 : -1, 1e-9);
   }
   EXPECT_GT(checked, 1500);
 }
 
 /// Touching is no crossing; it costs few pieces although rounding hides the sign.
 TEST(PieceMarch, PassesOverTouching) {
-  const Found one = find_alike({0.3, 0.3});
+  const Found one = find({0.3, 0.3});
   EXPECT_TRUE(one.t.empty());
   EXPECT_LT(one.evaluations, 1000);
-  EXPECT_TRUE(find_alike({0.3, 0.3, 0.7, 0.7}, -1).t.empty());
-  expect_roots(find_alike({0.3, 0.3, 0.6}), {0.6}, 1);
-  EXPECT_TRUE(find_alike({0.3, 0.3, 0.3, 0.3}).t.empty());
-  expect_roots(find_alike({0.3, 0.3, 0.3}), {0.3}, 1, 1e-4);
+  EXPECT_TRUE(find({0.3, 0.3, 0.7, 0.7}, -1).t.empty());
+  expect_roots(find({0.3, 0.3, 0.6}), {0.6}, 1);
+  EXPECT_TRUE(find({0.3, 0.3, 0.3, 0.3}).t.empty());
+  expect_roots(find({0.3, 0.3, 0.3}), {0.3}, 1, 1e-4);
 }
 
 /// A ray that lies in the surface all along is given up, and counted.
 TEST(PieceMarch, GivesUpWhereNothingIsTold) {
   const std::uint64_t before = interval::uncertified_count();
-  const Found zero = find<8>({0.5}, 0, 0, 1, 1);
+  const Found zero = find_in<kRoom>(Product<D>{{0.5}, 0}, 0, 1, 1);
   EXPECT_TRUE(zero.t.empty());
   EXPECT_LE(zero.evaluations * 8, interval::kMaxSteps);
   EXPECT_EQ(interval::uncertified_count(), before + 1);
@@ -122,11 +137,11 @@ TEST(PieceMarch, GivesUpWhereNothingIsTold) {
 
 /// A crossing at the end of the range is followed beyond the end if that is allowed, and no other.
 TEST(PieceMarch, SettlesTheEnd) {
-  EXPECT_TRUE(find_alike({0.5}, 1, 0, 0.5, 0.5).t.empty());
-  expect_roots(find_alike({0.5}, 1, 0, 0.5, 1), {0.5}, 1);
-  EXPECT_TRUE(find_alike({0.5, 0.75}, 1, 0, 0.25, 1).t.empty());
+  EXPECT_TRUE(find({0.5}, 1, 0, 0.5, 0.5).t.empty());
+  expect_roots(find({0.5}, 1, 0, 0.5, 1), {0.5}, 1);
+  EXPECT_TRUE(find({0.5, 0.75}, 1, 0, 0.25, 1).t.empty());
   // It begins there: the sign at the beginning cannot be told, so that there is none before.
-  EXPECT_TRUE(find_alike({0.5}, 1, 0.5, 1, 1).t.empty());
+  EXPECT_TRUE(find({0.5}, 1, 0.5, 1, 1).t.empty());
 }
 
 /// With one zero, on whose sides the slope differs, and steps beyond which the values are those of other
@@ -154,7 +169,6 @@ struct Stepped {
 
 /// Where the chord is a poor guide.
 TEST(PieceMarch, FindsZerosWhereValuesStep) {
-  using D = Simd<double, 4, ScalarIsa>;
   std::mt19937 random(7);
   const auto power = [&] { return std::exp2(random() % 21 - 10.0); };
   for (int k = 0; k < 5000; ++k) {
@@ -176,7 +190,7 @@ TEST(PieceMarch, ResumesWhereItStopped) {
   std::vector<double> roots, all;
   for (int i = 1; i < 12; ++i) roots.push_back(i / 12.0 + 1e-3);
   for (double a = 0; a < 1;) {
-    const Found part = find<8, 3>(roots, 1, a, 1, 1);
+    const Found part = find<3>(roots, 1, a, 1, 1);
     EXPECT_LE(part.t.size(), 3u);
     all.insert(all.end(), part.t.begin(), part.t.end());
     a = part.up_to;
