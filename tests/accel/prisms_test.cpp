@@ -108,16 +108,26 @@ TEST(Prisms, ThreeSidesInOnePlaneAreCrossedInTurn) {
   }
 }
 
+ExactTally verify_trial(const std::string& name, std::uint64_t trial) {
+  const std::vector<std::string> names = exact_oracle_names();
+  const auto form = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  return verify_exact(form, kRaysPerShape, available_isas(), trial);
+}
+
 /// Random outlines on a coarse grid of which sides lie on each other in part: where there are two, a hit is
 /// allowed, though rounded to float it may lie beside them.
 TEST(Prisms, SidesOnEachOtherInPart) {
-  const std::vector<std::string> names = exact_oracle_names();
-  const auto form = static_cast<std::size_t>(std::ranges::find(names, "prism") - names.begin());
   for (const std::uint64_t trial : {2903, 13154, 18649, 20418}) {
-    const ExactTally tally = verify_exact(form, kRaysPerShape, available_isas(), trial);
+    const ExactTally tally = verify_trial("prism", trial);
     EXPECT_EQ(tally.wrong(), 0u) << tally.failure;
     EXPECT_GT(tally.touched, 0u);
   }
+}
+
+/// One of the curves runs along a line and back on it, within another outline.
+TEST(Prisms, CurvesOnThemselves) {
+  const ExactTally tally = verify_trial("prism_bezier", 5709);
+  EXPECT_EQ(tally.wrong(), 0u) << tally.failure;
 }
 
 TEST(Prisms, OutlinesSideBySideAreOne) {

@@ -11,6 +11,8 @@ namespace {
 constexpr int kStretches = 768, kManyStretches = 8 * kStretches;
 /// Samples within the rounding of a hit at which three do not show a crossing.
 constexpr int kFineSamples = 1024;
+/// How far off a crossing may be, in units of its slack.
+constexpr long double kSharpness = 0x1p-14L;
 
 /// The greatest sum of magnitudes that a component of m p is made of.
 long double greatest_sum(const Affine& m, const Vec3l& p) {
@@ -80,6 +82,13 @@ std::vector<long double> AlongRay::crossings() const {
   std::vector<long double> found;
   Sample known;
   if (begin < end) search(0, stretches_, known, found);
+  // Two that are nearer to each other than they are known may be a touch: a wall without thickness.
+  for (std::size_t i = 1; i < found.size();)
+    if (found[i] - found[i - 1] <= 2 * kSharpness * slack(found[i]))
+      found.erase(found.begin() + static_cast<std::ptrdiff_t>(i) - 1,
+                  found.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    else
+      ++i;
   return found;
 }
 
@@ -105,7 +114,7 @@ void AlongRay::search(int first, int last, Sample& known, std::vector<long doubl
 /// secants that are drawn towards the middle, at most one step more than bisection.
 long double AlongRay::between(long double t0, long double f0, long double t1, long double f1) const {
   const bool negative = f0 < 0;
-  const long double enough = 0x1p-14L * slack(t0), whole = t1 - t0;
+  const long double enough = kSharpness * slack(t0), whole = t1 - t0;
   // How far from the middle a step may be, so that bisection could still end in time.
   long double reach = enough * std::exp2(std::ceil(std::log2(std::max(whole / enough, 1.0L))) + 1);
   while (t1 - t0 > enough) {

@@ -24,7 +24,7 @@ class AlongRay {
   /// that meets the surface at a slant, as it does in instances and far from the origin. Infinite if rounding
   /// may leave the crossing out.
   long double room(long double t) const;
-  /// Crossings, each off by at most 2^-14 of its slack.
+  /// Crossings, each off by at most 2^-14 of its slack; none where two are within twice that of each other.
   std::vector<long double> crossings() const;
   /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
   int ends(long double t) const;
