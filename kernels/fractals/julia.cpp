@@ -20,18 +20,15 @@ constexpr double kJuliaCellCost = 60;
 /// 32, and one more where c is rounded to T.
 template <class T>
 JuliaNumbers<T> numbers_of(const JuliaElement& e) {
-  constexpr bool floats = std::is_same_v<T, float>;
-  const double u = std::numeric_limits<T>::epsilon() * (e.power == 2 ? 8 : 32), R = e.radius * (1 + 0x1p-17);
+  const double u = std::numeric_limits<T>::epsilon() * (e.power == 2 ? 8 : 32);
   const double c = std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]);
   const double k = e.product() * (1 + 4 * u);
   JuliaNumbers<T> n;
   for (int i = 0; i < 4; ++i) n.c[i] = static_cast<T>(e.c[i]);
   n.slice = static_cast<T>(e.slice), n.limit = static_cast<T>(e.radius * e.radius);
-  n.outside = static_cast<T>(e.radius * (floats ? 1 + 0x1p-18 : 1 + 0x1p-40));
+  n.outside = static_cast<T>(e.radius * (std::is_same_v<T, float> ? 1 + 0x1p-18 : 1 + 0x1p-40));
   n.round = static_cast<T>(u), n.product = static_cast<T>(e.power == 2 ? k : k * e.product());
-  n.least = static_cast<T>(u * ((e.power == 2 ? R * R : R * R * R) + c));
-  n.linear = static_cast<T>(e.power == 2 ? 3 * u * R : 4 * u * R * R);
-  n.quadratic = static_cast<T>(5 * u * R);
+  n.c_rounding = static_cast<T>(u * c);
   return n;
 }
 

@@ -25,22 +25,17 @@
 
 namespace oktett {
 
-/// What describes a set, in numbers of T, and bounds on what their rounding does.
-///
-/// Those of one iteration of what has not escaped: with |z| <= R + r and |w| half <= r the roundings of
-/// squares, u (|z|^2 + |c| + |z| |w| half), are below
-///   u (R^2 + |c|) + 3 u R r + 2 u r^2 = least + linear r + 2 u r^2,
-/// and those of cubes, u (|z|^3 + |c| + |z|^2 |w| half), below
-///   u (R^3 + |c|) + 4 u R^2 r + 5 u R r^2 + 2 u r^3 = least + linear r + quadratic r^2 + 2 u r^3.
-/// What their last terms add to r^2 and r^3 is in `product`.
+/// What describes a set, in numbers of T, and bounds on what their rounding does. With |w| half <= r the
+/// roundings of an iteration are below u (|z|^2 + |c| + |z| r) for squares and u (|z|^3 + |c| + |z|^2 r) for
+/// cubes. They are taken where z is: R may be far greater, and floats would tell nothing.
 template <class T>
 struct JuliaNumbers {
   T c[4], slice;
-  T limit;    ///< R^2
-  T outside;  ///< what is farther out has left R, whatever its square is rounded to
-  T round;    ///< u
-  T product;  ///< K or K^2, rounded up
-  T least, linear, quadratic;
+  T limit;       ///< R^2
+  T outside;     ///< what is farther out has left R, whatever its square is rounded to
+  T round;       ///< u
+  T product;     ///< K or K^2, rounded up
+  T c_rounding;  ///< u |c|
 };
 
 struct JuliaElement {
@@ -135,8 +130,7 @@ class JuliaField {
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
-    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product);
-    const D least(n_.least), linear(n_.linear), quadratic(n_.quadratic);
+    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product), least(n_.c_rounding);
     Number z = place(m), w{d_.x, d_.y, d_.z, D(0)};
     // What rounding makes of the direction.
     D slope = root_above(w.norm2()), phi = u * slope, eps = first_error(z) + phi * half, r(0);
@@ -150,11 +144,11 @@ class JuliaField {
       if (n == e_.iterations || escape.all()) break;
       const D all = slope + phi, rounded = phi + u * slope;
       if (e_.power == 2) {
-        eps = product * (two * length * eps + r * (r + linear)) + least;
+        eps = product * (two * length * eps + r * (r + u * length)) + (u * zz + least);
         phi = two * product * (length * rounded + r * all);
       } else {
-        const D cubic = (three * length + (r + quadratic)) * r + linear;
-        eps = product * (three * zz * eps + cubic * r) + least;
+        const D cubic = (three * length + r) * r + u * zz;
+        eps = product * (three * zz * eps + cubic * r) + (u * length * zz + least);
         phi = three * product * (zz * rounded + (two * length + r) * r * all);
       }
       w = z.next_slope(e_, w), z = z.next(e_, n_.c);
@@ -176,17 +170,17 @@ class JuliaField {
 
   /// The value of about(s, 0), without the derivative and what it takes.
   OKTETT_INLINE Interval<D> at(const D& s) const {
-    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product);
-    const D least(n_.least), linear(n_.linear), quadratic(n_.quadratic);
+    const D two(2), three(3), u(n_.round), limit(n_.limit), product(n_.product), least(n_.c_rounding);
     Number z = place(s);
     D zz = z.norm2(), length = root_above(zz), eps = first_error(z);
     Escape escape(n_);
     for (int n = 0;; ++n) {
       escape.look(zz, eps);
       if (n == e_.iterations || escape.all()) break;
-      const D factor = e_.power == 2 ? two * length + (eps + linear)
-                                     : three * zz + ((three * length + (eps + quadratic)) * eps + linear);
-      eps = product * (factor * eps) + least;
+      if (e_.power == 2)
+        eps = product * ((two * length + eps) * eps) + (u * zz + least);
+      else
+        eps = product * ((three * zz + (three * length + eps) * eps) * eps) + (u * length * zz + least);
       z = z.next(e_, n_.c);
       zz = z.norm2(), length = root_above(zz);
     }
@@ -242,8 +236,8 @@ class JuliaField {
   D far_;  ///< at least |o|
 };
 
-/// The same at places that are not negative; roughly by floats: half of the registers, and roots without
-/// conversions.
+/// The same in doubles at places that are not negative, and roughly in floats: half of the registers, and
+/// roots without conversions. The scalar set asks lane by lane, as its registers hold one.
 template <class D>
 class JuliaRayField {
  public:
@@ -252,23 +246,71 @@ class JuliaRayField {
   OKTETT_INLINE JuliaRayField(const JuliaElement& e, const Vec3d& o, const Vec3d& d)
       : field_(e, o, d), rough_(e, o, d) {}
 
-  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const { return field_.over(s); }
-  OKTETT_INLINE Interval<D> at(const D& s) const { return field_.at(s); }
+  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const {
+    if constexpr (kTogether) {
+      return field_.over(s);
+    } else {
+      Dual<Interval<D>> all;
+      for (int i = 0; i < D::kWidth; ++i) {
+        const auto f = field_.over({lane(s.lo, i), lane(s.hi, i)});
+        put(f.v, all.v, i), put(f.d, all.d, i);
+      }
+      return all;
+    }
+  }
+  OKTETT_INLINE Interval<D> at(const D& s) const { return at_each(field_, s); }
   OKTETT_INLINE Dual<Interval<F>> over_roughly(const double* ends) const {
     constexpr int n = D::kWidth;
     double middle[n];
     for (int i = 0; i < n; ++i) middle[i] = ends[i] + (ends[i + 1] - ends[i]) * 0.5;
     // Also what is lost where the middles become floats.
-    const double half = (ends[n] - ends[0]) * ((1 + 0x1p-20) / (2 * n)) + (ends[0] + ends[n]) * 0x1p-23;
-    return rough_.about(to_float(D::load(middle)), F(static_cast<float>(half)));
+    const auto half =
+        static_cast<float>((ends[n] - ends[0]) * ((1 + 0x1p-20) / (2 * n)) + (ends[0] + ends[n]) * 0x1p-23);
+    const F m = to_float(D::load(middle));
+    if constexpr (kTogether) {
+      return rough_.about(m, F(half));
+    } else {
+      Dual<Interval<F>> all;
+      for (int i = 0; i < n; ++i) {
+        const auto f = rough_.about(lane(m, i), half);
+        put(f.v, all.v, i), put(f.d, all.d, i);
+      }
+      return all;
+    }
   }
   OKTETT_INLINE Interval<F> at_roughly(const double* places) const {
-    return rough_.at(to_float(D::load(places)));
+    return at_each(rough_, to_float(D::load(places)));
   }
 
  private:
-  JuliaField<D> field_;
-  JuliaField<F> rough_;
+  using A = typename D::Isa;
+  static constexpr bool kTogether = D::kLanesPerPart > 1;
+  template <class S>
+  using Asked = std::conditional_t<kTogether, S, Simd<typename S::Element, 1, A>>;
+
+  template <class Field, class S>
+  static OKTETT_INLINE Interval<S> at_each(const Field& field, const S& s) {
+    if constexpr (kTogether) {
+      return field.at(s);
+    } else {
+      Interval<S> all;
+      for (int i = 0; i < S::kWidth; ++i) put(field.at(lane(s, i)), all, i);
+      return all;
+    }
+  }
+  template <class S>
+  static OKTETT_INLINE Asked<S> lane(const S& s, int i) {
+    Asked<S> one;
+    one.part[0] = s.part[i];
+    return one;
+  }
+  template <class One, class S>
+  static OKTETT_INLINE void put(const Interval<One>& one, Interval<S>& all, int i) {
+    all.lo.part[i] = one.lo.part[0], all.hi.part[i] = one.hi.part[0];
+  }
+
+  JuliaField<Asked<D>> field_;
+  JuliaField<Asked<F>> rough_;
 };
 
 struct JuliaPool : ExactPool<JuliaElement> {

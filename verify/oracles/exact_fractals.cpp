@@ -189,7 +189,7 @@ ExactOracle julia(CaseRandom& random) {
   s.iterations = 1 + static_cast<std::uint32_t>(random.unit() * 6);
   if (random.unit() < 0.5) s.algebra = JuliaShape::Algebra::hypercomplex;
   if (random.unit() < 0.3) s.power = 3;
-  if (random.unit() < 0.3) s.escape = 4;
+  if (const double which = random.unit(); which < 0.3) s.escape = which < 0.1 ? 4 : which < 0.2 ? 40 : 1000;
   Real size = 0;
   for (const double c : s.c) size += static_cast<Real>(c) * c;
   const Real r = std::max((1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2, static_cast<Real>(s.escape));
@@ -204,7 +204,11 @@ ExactOracle julia(CaseRandom& random) {
     const Vec3d middle = (a + b) * 0.5;
     return stay_on_one_side(s, {middle.x, middle.y, middle.z, s.slice}, 0.5 * length(b - a) + 1e-14, r);
   };
-  o.grow({0, 0, 0}, static_cast<double>(r));
+  // What stays within r came from nearer, by |z^p + c| >= |z|^p - |c|.
+  Real reach = r;
+  for (std::uint32_t n = 0; n < s.iterations; ++n)
+    reach = std::min(reach, std::pow(reach + std::sqrt(size), Real(1) / s.power));
+  o.grow({0, 0, 0}, static_cast<double>(reach));
   return o;
 }
 
