@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/hit_object.h"
 #include "render/shading_point.h"
 
 namespace oktett {

@@ -1,4 +1,5 @@
 #include "render/insides.h"
+#include "render/hit_object.h"
 
 #include <algorithm>
 #include <utility>

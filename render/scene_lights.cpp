@@ -11,6 +11,7 @@
 #include "core/math.h"
 #include "core/mesh_geometry.h"
 #include "render/dielectric_stack.h"
+#include "render/hit_object.h"
 #include "render/light/sky.h"
 #include "render/light_groups.h"
 #include "render/shading_point.h"

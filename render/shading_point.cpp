@@ -11,6 +11,7 @@
 #include "render/bsdf/metals.h"
 #include "render/bsdf/optics.h"
 #include "render/bsdf/principled_lobes.h"
+#include "render/hit_object.h"
 #include "render/shading_lanes.h"
 
 namespace oktett {

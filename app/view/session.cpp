@@ -23,6 +23,7 @@
 #include "io/image/image.h"
 #include "io/text/files.h"
 #include "render/camera.h"
+#include "render/hit_object.h"
 #include "render/picture/prepared_scene.h"
 
 namespace oktett {

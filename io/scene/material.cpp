@@ -13,7 +13,7 @@
 #include "io/yaml/utf8.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
-#include "render/geometry.h"
+#include "render/solids.h"
 
 namespace oktett {
 namespace {

@@ -21,6 +21,7 @@
 #include "io/mesh/reading.h"
 #include "io/scene/shape_mesh.h"
 #include "render/geometry.h"
+#include "render/solids.h"
 
 namespace oktett {
 namespace {

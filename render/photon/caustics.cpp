@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "render/context.h"
+#include "render/hit_object.h"
 #include "render/light/emitter_kinds.h"
 #include "render/moments.h"
 #include "render/photon/photon_map.h"

@@ -9,6 +9,7 @@
 #include "accel/geometry_bounds.h"
 #include "core/math.h"
 #include "render/bsdf/principled/base.h"
+#include "render/hit_object.h"
 #include "render/light/emitter_kinds.h"
 #include "render/light/light_share.h"
 #include "render/sampling/warp.h"

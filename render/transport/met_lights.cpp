@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/hit_object.h"
 #include "render/transport/integrators.h"
 #include "render/transport/path.h"
 #include "render/transport/path_block.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/dispersion.h"
+#include "render/hit_object.h"
 #include "render/path_surface.h"
 #include "render/photon/caustics.h"
 #include "render/sampling/owen_sobol.h"

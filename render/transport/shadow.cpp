@@ -8,6 +8,7 @@
 
 #include "accel/accel.h"
 #include "core/math.h"
+#include "render/hit_object.h"
 #include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/medium_march.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/context.h"
+#include "render/hit_object.h"
 #include "render/raised_points.h"
 #include "render/render_options.h"
 #include "render/shading_point.h"

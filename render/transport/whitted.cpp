@@ -6,6 +6,7 @@
 #include "accel/accel_data.h"
 #include "core/math.h"
 #include "core/random.h"
+#include "render/hit_object.h"
 #include "render/light/light_share.h"
 #include "render/shading_lanes.h"
 #include "render/transport/integrators.h"

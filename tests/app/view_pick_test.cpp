@@ -17,7 +17,7 @@
 
 #include "io/scene/scene_file.h"
 #include "render/camera.h"
-#include "render/geometry.h"
+#include "render/hit_object.h"
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "render/solids.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::geometry_test {
