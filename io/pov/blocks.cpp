@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "io/pov/evaluate.h"
 #include "io/pov/interpreter.h"
@@ -335,15 +336,16 @@ Datum Interpreter::parse_spline(const Token& keyword) {
     spline->points.push_back(point);
   }
   hold_ = outer;
-  // Of points at the same place the last one counts.
-  std::vector<Spline::Point>& points = spline->points;
-  if (std::ranges::any_of(points, [](const Spline::Point& p) { return p.at != p.at; }))
+  if (std::ranges::any_of(spline->points, [](const Spline::Point& p) { return p.at != p.at; }))
     fail(keyword.where, "a point of this spline has no place");
-  std::ranges::stable_sort(points, {}, &Spline::Point::at);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (i + 1 == points.size() || points[i + 1].at != points[i].at) points[kept++] = points[i];
-  points.resize(kept);
+  // Of points at the same place the last one counts, but the point that is farthest so far stays.
+  std::map<double, Spline::Point> at;
+  for (const Spline::Point& point : spline->points)
+    if (const auto [old, added] = at.try_emplace(point.at, point);
+        !added && (at.size() == 1 || std::next(old) != at.end()))
+      old->second = point;
+  spline->points.clear();
+  for (const auto& [place, point] : at) spline->points.push_back(point);
   Datum datum;
   datum.value = SplinePtr(std::move(spline));
   return datum;

@@ -389,13 +389,13 @@ void Interpreter::begin_if(const Place& where, Keyword kind) {
   open_.push_back({.kind = Open::Kind::chosen, .where = where});
 }
 
-/// The end of a branch that was followed.
+/// The end of a branch that was followed; a case of a #switch goes on through what stands for all others.
 void Interpreter::reach_else(const Place& where) {
   check_floor(where);
   if (open_.size() == frames_.back().open) fail(where, "there is no #if that this belongs to");
   const Open::Kind kind = open_.back().kind;
-  if (kind != Open::Kind::chosen && kind != Open::Kind::switched)
-    fail(where, "expected #end of the loop before this");
+  if (kind == Open::Kind::switched) return;
+  if (kind != Open::Kind::chosen) fail(where, "expected #end of the loop before this");
   skip_block(open_.back().where, false, false);
   open_.pop_back();
 }

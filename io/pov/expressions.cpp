@@ -264,7 +264,8 @@ Numbers Interpreter::call_value(const Datum& datum, const Token& name) {
 }
 
 Numbers Interpreter::parse_postfix(Numbers value) {
-  while (next_is('.')) {
+  // A value that is the last of a macro may be followed by what stands behind the call.
+  while (next_is('#') ? peek().is('.') : next_is('.')) {
     take();
     const Token name = take();
     const int index = name.kind == Token::Kind::word ? component_index(name.name->text) : -2;

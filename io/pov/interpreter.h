@@ -219,7 +219,6 @@ class Interpreter {
     const Source* file;   ///< null: a macro
     std::shared_ptr<const Macro> macro;
     std::uint32_t call;
-    double version;  ///< before the file
     std::vector<Name*> locals{};
   };
 

@@ -201,7 +201,6 @@ bool Interpreter::leave_frame(Token& token) {
     while (!name->bindings.empty() && name->bindings.back().scope == frame.scope) name->bindings.pop_back();
   at_ = frame.back;
   call_ = frame.call;
-  version_ = frame.version;
   frames_.pop_back();
   return true;
 }
@@ -244,8 +243,7 @@ void Interpreter::enter_file(const std::string& path, const Place& where) {
   if (depth > limits_.include_depth)
     fail(where, "more than " + std::to_string(limits_.include_depth) + " files include each other");
   Source& file = source(path, where);
-  frames_.push_back(
-      {at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_, version_});
+  frames_.push_back({at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), &file, nullptr, call_});
   at_ = {&file, file.text.data(), file.text.data(), 1};
   count_step(where, file.text.size() / kBytesOfStep);
 }
@@ -310,8 +308,7 @@ void Interpreter::call_macro(const Token& token, const std::shared_ptr<const Mac
   if (arguments.size() < count)
     fail(token.where,
          what + " takes " + std::to_string(count) + " values, found " + std::to_string(arguments.size()));
-  Frame frame{at_,   open_.size(), static_cast<std::uint32_t>(frames_.size()), nullptr, nullptr,
-              call_, version_};
+  Frame frame{at_, open_.size(), static_cast<std::uint32_t>(frames_.size()), nullptr, nullptr, call_};
   frame.macro = called;
   frames_.push_back(std::move(frame));
   for (std::size_t i = 0; i < count; ++i) {

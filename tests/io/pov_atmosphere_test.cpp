@@ -96,6 +96,13 @@ TEST_F(PovAtmosphere, FinishesSayHowLightFallsOff) {
                  "rgb <0.5, 0.25, 0> }"),
             "ambient: 0.1, diffuse: 0.6, specular: 0.5, phong: 20, specular_blinn: 0.25, blinn: 10, "
             "reflection: 0.5, reflection_color: [1, 0.5, 0]");
+  // As parts of the light, of 1 (measured in POV-Ray by what a plane sends back at once).
+  EXPECT_EQ(look("pigment { rgb 1 } finish { diffuse albedo 0.25 brilliance 3 }"),
+            "ambient: 0.1, diffuse: 0.5, brilliance: 3");
+  EXPECT_EQ(look("pigment { rgb 1 } finish { phong_size 39 phong albedo 0.01 }"),
+            "ambient: 0.1, diffuse: 0.6, specular: 0.2, phong: 39");
+  EXPECT_EQ(look("pigment { rgb 1 } finish { specular albedo 0.14 roughness 0.25 }"),
+            "ambient: 0.1, diffuse: 0.6, specular_blinn: 0.12000000000000001, blinn: 4");
   EXPECT_EQ(look("pigment { rgb 1 } finish { brilliance 1 crand 0 specular 0 }"),
             "ambient: 0.1, diffuse: 0.6");
 }

@@ -209,6 +209,9 @@ TEST(PovLanguage, SaysWhatPovRaySays) {
       {R"(#switch (3) #case (1) #debug "1" #range (2,4) #debug "r" #case (7) #debug "7" #break #else #debug "e" #end)",
        R"(r7)"},
       {R"(#switch (9) #case (1) #debug "1" #break #else #debug "e" #end)", R"(e)"},
+      {R"(#macro M() (<1,2,3>) #end #macro N() #local V=<4,5,6>; V #end #declare A = 1+M().y; #debug str(A+N().z,0,1) #debug str((M().x),0,1))",
+       R"(9.01.0)"},
+      {R"(#switch (1) #case (1) #debug "1" #else #debug "e" #end #debug "z")", R"(1ez)"},
       {R"(#declare i=0; #while (1) #declare i=i+1; #if (i=4) #break #end #debug str(i,0,0) #end)", R"(123)"},
       {R"(#declare Fn = function(p,q){p*q+2}; #debug str(Fn(3,4),0,1))", R"(14.0)"},
       {R"(#declare Fn = function{x+y*z}; #debug str(Fn(3,4,5),0,1))", R"(23.0)"},
@@ -263,6 +266,8 @@ TEST(PovLanguage, SaysWhatPovRaySays) {
        R"(1.437500,0.953125,3.375000 1.875000,2.375000,5.000000)"},
       {R"(#declare S = spline{linear_spline 0,<0,0> 0,<1,5> 1,<2,6>}; #debug vstr(2,S(0),",",0,6))",
        R"(1.000000,5.000000)"},
+      {R"(#declare S = spline{linear_spline 0,<0,0> 1,<1,0> 1,<5,0> 2,<2,0>}; #declare T = spline{linear_spline 0,<0,0> 1,<1,0> 2,<2,0> 1,<5,0>}; #declare U = spline{S 2,<9,0> 1,<7,0>}; #debug vstr(3,<S(1).x,T(1).x,U(2).x>,",",0,1) #debug str(U(1).x,0,1))",
+       R"(1.0,5.0,2.07.0)"},
       {R"(#declare S = spline{linear_spline 0,<0,0,1,2> 1,<1,2,3,4>}; #debug vstr(4,S(.5),",",0,3))",
        R"(0.500,1.000,2.000,3.000)"},
       {R"(#declare S = spline{linear_spline 0,<0,0,1,2,5> 1,<1,2,3,4,5>}; #declare S2=spline{S quadratic_spline 2,<0,0,0,0,0>}; #debug vstr(5,S2(.5),",",0,3))",
@@ -538,6 +543,19 @@ TEST(PovLanguage, TransformsThatDoubleAreComputedOnce) {
   EXPECT_EQ(
       error_of("#declare F = function { transform { scale <1,0,1> matrix 3 } } #declare X = F(1, 2, 3);"),
       "a.pov:1:51: expected a vector of 12 numbers behind 'matrix'");
+}
+
+/// Include files that change the version and are to leave it put it back themselves.
+TEST(PovLanguage, VersionsOfIncludesStay) {
+  const TempDir dir;
+  dir.write("old.inc", "#version 3.5;");
+  std::string said;
+  ReadOptions options;
+  options.debug = [&said](const std::string& text) { said += text; };
+  const std::string scene =
+      dir.write("a.pov", "#version 3.7; #include \"old.inc\" #debug str(version, 0, 1)");
+  EXPECT_EQ(pov::read_pov(scene, options).version, 3.5);
+  EXPECT_EQ(said, "3.5");
 }
 
 TEST(PovLanguage, ConditionsLeaveTheirDirectiveAlone) {
