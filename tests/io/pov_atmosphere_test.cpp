@@ -88,6 +88,16 @@ TEST_F(PovAtmosphere, RainbowsAreRainbows) {
   EXPECT_EQ(scene.rainbows[0].colors.size(), 2u);
 }
 
+/// `uv_mapping` of an object is that of the textures behind it.
+TEST_F(PovAtmosphere, ObjectsMapTheirTexturesByUv) {
+  const std::string texture = "texture { pigment { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }";
+  EXPECT_NE(look("uv_mapping " + texture).find("by_uv: true"), std::string::npos);
+  EXPECT_NE(look("uv_mapping pigment { gradient x color_map { [0 rgb 0] [1 rgb 1] } }").find("by_uv: true"),
+            std::string::npos);
+  EXPECT_EQ(look(texture).find("by_uv"), std::string::npos);
+  EXPECT_EQ(look("uv_mapping off " + texture).find("by_uv"), std::string::npos);
+}
+
 TEST_F(PovAtmosphere, FinishesSayHowLightFallsOff) {
   EXPECT_EQ(look("pigment { rgb 1 } finish { brilliance 3 crand 0.2 }"),
             "ambient: 0.1, diffuse: 0.6, brilliance: 3, grain: 0.2");

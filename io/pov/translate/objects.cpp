@@ -237,8 +237,16 @@ static std::shared_ptr<const Block> texture_of_back(const Block& block) {
   return texture;
 }
 
+/// A texture or pigment whose object says `uv_mapping` before it.
+static std::shared_ptr<const Block> texture_by_uv(std::shared_ptr<const Block> inner) {
+  const Place where = inner->where;
+  return std::make_shared<Block>(
+      Block{"texture", where, {{where, Word{"uv_mapping"}}, {where, std::move(inner)}}, {}, nullptr});
+}
+
 ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Arguments& a) {
   Modifiers m;
+  bool by_uv = false;
   while (!a.at_end()) {
     const Place where = a.where();
     if (take_moves(context_, a, m.moves)) continue;
@@ -246,7 +254,7 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       a.take();
       const std::string_view k = inner->keyword;
       if (k == "texture" || k == "pigment") {
-        m.own.textures.push_back(inner), m.own.to_texture = m.moves.all;
+        m.own.textures.push_back(by_uv ? texture_by_uv(inner) : inner), m.own.to_texture = m.moves.all;
       } else if (k == "finish" || k == "normal") {
         m.own.finishes.push_back(inner), m.own.to_texture = m.moves.all;
       } else if (k == "interior") {
@@ -275,9 +283,14 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       m.inverse = !m.inverse;
     else if (a.take_word("hollow"))
       m.hollow = a.flag();
-    else if (a.take_word("sturm") || a.take_word("hierarchy") || a.take_word("double_illuminate") ||
-             a.take_word("open") || a.take_word("no_radiosity") || a.take_word("split_union") ||
-             a.take_word("cutaway_textures") || a.take_word("uv_mapping"))
+    else if (a.take_word("uv_mapping"))
+      by_uv = a.flag();
+    else if (a.take_word("double_illuminate")) {
+      if (a.flag())
+        context_.tell("double_illuminate", where,
+                      "'double_illuminate' has no meaning here: lamps light one side");
+    } else if (a.take_word("sturm") || a.take_word("hierarchy") || a.take_word("open") ||
+               a.take_word("no_radiosity") || a.take_word("split_union") || a.take_word("cutaway_textures"))
       a.flag();
     else
       a.take();

@@ -56,8 +56,7 @@ class TextureReader {
         read_sides(*object, base, entries);
       }
     }
-    if (pattern.uses_uv && pattern.is_none())
-      look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = true;
+    if (pattern.uses_uv && pattern.is_none()) use_uv(look);
     if (pattern.is_none() || entries.empty()) return;
     if (!pattern.is_list && pattern.word != "average")
       std::ranges::stable_sort(entries, {}, &TextureEntry::at);
@@ -69,6 +68,12 @@ class TextureReader {
     constexpr std::string_view kParts[] = {"texture", "material",    "pigment",     "finish",
                                            "normal",  "texture_map", "material_map"};
     return std::ranges::find(kParts, block.keyword) != std::end(kParts);
+  }
+
+  static void use_uv(Look& look) {
+    look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = look.pattern.uses_uv = true;
+    for (Look& layer : look.layers) use_uv(layer);
+    for (TextureEntry& entry : look.entries) use_uv(entry.look);
   }
 
   void read_part(const Block& block, Look& look) {
