@@ -4,17 +4,12 @@
 #include <limits>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 namespace oktett {
 namespace {
 
 /// Halvings of the box that is looked at for bounds.
 constexpr int kBoundLevels = 6;
-/// Cells along the longest side of the bounds.
-constexpr double kCellsAlong = 64;
-/// Time to look for crossings in a cell, in units of that to visit a node.
-constexpr double kJuliaCellCost = 60;
 
 /// An iteration of squares makes fewer than eight roundings of half of T's epsilon, one of cubes fewer than
 /// 32, and one more where c is rounded to T.
@@ -32,15 +27,14 @@ JuliaNumbers<T> numbers_of(const JuliaElement& e) {
   return n;
 }
 
-/// The sign of |z_n|^2 - R^2 in the ball about p: from -1 to 1 where it is not certain.
-CellRange range_in(const JuliaElement& e, const Vec3d& p, double radius) {
+/// Whether all in the ball about p surely leaves the radius R.
+bool escapes(const JuliaElement& e, const Vec3d& p, double radius) {
   JuliaNumber<double> z{p.x, p.y, p.z, e.slice};
   double eps = radius * (1 + 0x1p-40);
   for (int n = 0;; ++n) {
     const double zz = z.norm2(), length = std::sqrt(zz);
-    if (length - eps > e.radius * (1 + 0x1p-40)) return {1, 1};
-    if (!(eps < 1e6)) return {-1, 1};
-    if (n == e.iterations) return {-1, length + eps < e.radius * (1 - 0x1p-40) ? -1.0 : 1.0};
+    if (length - eps > e.radius * (1 + 0x1p-40)) return true;
+    if (n == e.iterations || !(eps < 1e6)) return false;
     const double factor = e.product(),
                  of_power = e.power == 2 ? factor * (2 * length + eps)
                                          : factor * factor * (3 * zz + 3 * length * eps + eps * eps);
@@ -49,24 +43,7 @@ CellRange range_in(const JuliaElement& e, const Vec3d& p, double radius) {
   }
 }
 
-bool escapes(const JuliaElement& e, const Vec3d& p, double radius) { return range_in(e, p, radius).lo > 0; }
-
-class JuliaRule : public CellRule {
- public:
-  explicit JuliaRule(const JuliaElement& e) : element_(e) {}
-
-  CellRange narrow(const CellBox& box, std::span<const std::uint32_t> part,
-                   std::vector<std::uint32_t>& out) const override {
-    out.assign(part.begin(), part.end());
-    return range_in(element_, (box.lo + box.hi) * 0.5, 0.5 * length(box.hi - box.lo));
-  }
-  double least_size(std::span<const std::uint32_t>) const override { return element_.size / kCellsAlong; }
-  double cost(std::span<const std::uint32_t>) const override { return kJuliaCellCost; }
-
- private:
-  const JuliaElement& element_;
-};
-
+/// Makes the box hold all of the smallest cubes that may hold points of the set.
 void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int levels, Vec3d& lo, Vec3d& hi) {
   bool known = true;
   for (int k = 0; k < 3; ++k) known &= lo[k] <= middle[k] - half && middle[k] + half <= hi[k];
@@ -81,8 +58,22 @@ void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int le
                 half / 2, levels - 1, lo, hi);
 }
 
-/// The element and a box around it; nothing if it is empty or not as it must be.
-std::optional<std::pair<JuliaElement, CellBox>> bounded_element(const JuliaShape& s) {
+/// Whether some of the balls about the smallest of these cubes does not surely escape.
+bool may_stay(const JuliaElement& e, const Vec3d& middle, double half, int levels) {
+  if (escapes(e, middle, half * std::sqrt(3.0))) return false;
+  if (levels == 0) return true;
+  for (int k = 0; k < 8; ++k)
+    if (may_stay(e, middle + Vec3d{k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half} * 0.5,
+                 half / 2, levels - 1))
+      return true;
+  return false;
+}
+
+/// Half of the cube about zero that holds all.
+double half_of(const JuliaElement& e) { return e.radius * (1 + 0x1p-20); }
+
+/// The element without its size; nothing if it is not as it must be.
+std::optional<JuliaElement> element_of(const JuliaShape& s) {
   const double size = std::sqrt(s.c[0] * s.c[0] + s.c[1] * s.c[1] + s.c[2] * s.c[2] + s.c[3] * s.c[3]);
   if (!(size <= 2) || !std::isfinite(s.slice) || s.iterations < 1 || s.iterations > kMaxJuliaIterations)
     return std::nullopt;
@@ -96,26 +87,29 @@ std::optional<std::pair<JuliaElement, CellBox>> bounded_element(const JuliaShape
   e.iterations = static_cast<int>(s.iterations), e.power = static_cast<int>(s.power);
   e.hypercomplex = s.algebra == JuliaShape::Algebra::hypercomplex;
   e.in_doubles = numbers_of<double>(e), e.in_floats = numbers_of<float>(e);
-  const double inf = std::numeric_limits<double>::infinity();
-  Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
-  grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);
-  if (!(lo.x < hi.x)) return std::nullopt;
-  e.size = max_component(hi - lo);
-  return std::pair{e, CellBox{lo, hi}};
+  e.size = 0;
+  return e;
 }
 
 }  // namespace
 
-bool is_empty(const JuliaShape& shape) { return !bounded_element(shape); }
+bool is_empty(const JuliaShape& shape) {
+  const std::optional<JuliaElement> e = element_of(shape);
+  return !e || !may_stay(*e, {0, 0, 0}, half_of(*e), kBoundLevels);
+}
 
 void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
-  const auto found = bounded_element(s);
+  const std::optional<JuliaElement> found = element_of(s);
   if (!found) return;
-  const auto& [e, box] = *found;
-  const auto element = static_cast<std::uint32_t>(pool.elements.size());
-  const std::uint32_t all[1] = {0};
-  pool.tree.divide(JuliaRule(e), box, all, element, pool.cells);
+  JuliaElement e = *found;
+  const double inf = std::numeric_limits<double>::infinity();
+  Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
+  grow_bounds(e, {0, 0, 0}, half_of(e), kBoundLevels, lo, hi);
+  if (!(lo.x < hi.x)) return;
+  e.size = max_component(hi - lo);
   add_element(pool, e, place.to_world, place);
+  const Vec3d room = Vec3d{1, 1, 1} * (e.size * 0x1p-30);
+  add_cell(pool, lo - room, hi + room);
 }
 
 }  // namespace oktett

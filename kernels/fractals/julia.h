@@ -14,11 +14,7 @@
 /// complex ones u and v, multiplied one by one, with |q|^2 = (|u|^2 + |v|^2) / 2: there K is the root of 2,
 /// and |q^p| >= |q|^p, so that R is the same. A piece of which all has |z_k| > R for some k is outside. So no
 /// estimate of a distance is trusted, and no step is made that is not proved.
-///
-/// The same bounds over balls divide the space into cells, of which those surely outside or inside are left
-/// out.
 
-#include "kernels/exact/cell_tree.h"
 #include "kernels/exact/line_columns.h"
 #include "kernels/exact/piece_march.h"
 #include "kernels/fractals/julia_data.h"
@@ -45,7 +41,7 @@ struct JuliaElement {
   int iterations;
   int power;
   bool hypercomplex;
-  double size;  ///< of the box about all cells
+  double size;  ///< of the box about all
   JuliaNumbers<double> in_doubles;
   JuliaNumbers<float> in_floats;
 
@@ -313,18 +309,14 @@ class JuliaRayField {
   JuliaField<Asked<F>> rough_;
 };
 
-struct JuliaPool : ExactPool<JuliaElement> {
-  CellTree tree;
-  std::size_t bytes() const { return ExactPool::bytes() + tree.bytes(); }
-};
-
 /// Whether a Julia set has no points, as far as balls of a 64th of its bounds tell.
 bool is_empty(const JuliaShape& shape);
 
 struct Julia {
   using Data = JuliaShape;
-  using Pool = JuliaPool;
+  using Pool = ExactPool<JuliaElement>;
   static constexpr int kMaxCrossings = 16;
+  static constexpr bool kOneCell = true;
 
   static void add(Pool& pool, const JuliaShape& shape, const ExactPlace& place);
 
