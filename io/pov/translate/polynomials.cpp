@@ -22,21 +22,32 @@ struct ValueRange {
   double lo, hi;
 };
 
-ValueRange power_of(double lo, double hi, int n) {
-  const double a = std::pow(lo, n), b = std::pow(hi, n);
-  if (n % 2 == 1) return {a, b};
-  return {lo < 0 && 0 < hi ? 0 : std::min(a, b), std::max(a, b)};
-}
+constexpr int kMostDegree = 32;
 
-/// Encloses a polynomial in a box (R. E. Moore: Interval Analysis, 1966).
-ValueRange range_in(const std::vector<Term>& terms, const Extent& box) {
+/// The powers of an interval up to a degree; by products, as each box needs all of them.
+struct PowerRanges {
+  ValueRange of[kMostDegree + 1];
+  PowerRanges(double lo, double hi, int degree) {
+    double a = 1, b = 1;
+    for (int n = 1; n <= degree; ++n) {
+      a *= lo, b *= hi;
+      of[n] =
+          n % 2 == 1 ? ValueRange{a, b} : ValueRange{lo < 0 && 0 < hi ? 0 : std::min(a, b), std::max(a, b)};
+    }
+  }
+};
+
+/// Encloses a polynomial of at most `degree` in a box (R. E. Moore: Interval Analysis, 1966).
+ValueRange range_in(const std::vector<Term>& terms, int degree, const Extent& box) {
+  const PowerRanges powers[3] = {
+      {box.lo.x, box.hi.x, degree}, {box.lo.y, box.hi.y, degree}, {box.lo.z, box.hi.z, degree}};
   ValueRange sum{0, 0};
   double size = 0;
   for (const Term& t : terms) {
     ValueRange r{t.factor, t.factor};
     for (int k = 0; k < 3; ++k) {
       if (t.power[k] == 0) continue;
-      const ValueRange p = power_of(box.lo[k], box.hi[k], t.power[k]);
+      const ValueRange& p = powers[k].of[t.power[k]];
       const double ends[4] = {r.lo * p.lo, r.lo * p.hi, r.hi * p.lo, r.hi * p.hi};
       r = {*std::min_element(ends, ends + 4), *std::max_element(ends, ends + 4)};
     }
@@ -50,7 +61,8 @@ ValueRange range_in(const std::vector<Term>& terms, const Extent& box) {
 /// Looks for a box that holds all zeros of a polynomial, and all that is negative if `solid`.
 class ZeroBox {
  public:
-  ZeroBox(const std::vector<Term>& terms, bool solid, int levels) : terms_(terms), solid_(solid) {
+  ZeroBox(const std::vector<Term>& terms, int degree, bool solid, int levels)
+      : terms_(terms), degree_(degree), solid_(solid) {
     grow(kAll, levels);
   }
   /// Whether the search came to its end and found something.
@@ -63,7 +75,7 @@ class ZeroBox {
     bool known = true;
     for (int k = 0; k < 3; ++k) known &= found_.lo[k] <= box.lo[k] && box.hi[k] <= found_.hi[k];
     if (known) return;
-    const ValueRange f = range_in(terms_, box);
+    const ValueRange f = range_in(terms_, degree_, box);
     if (f.lo > 0 || (f.hi < 0 && !solid_)) return;
     if (levels == 0) {
       found_ = {min(found_.lo, box.lo), max(found_.hi, box.hi)};
@@ -78,15 +90,16 @@ class ZeroBox {
   }
 
   const std::vector<Term>& terms_;
+  const int degree_;
   const bool solid_;
   int work_ = 20000;
   Extent found_{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 };
 
 /// All that is looked at if none is found.
-Extent bounds_of(const std::vector<Term>& terms, bool solid) {
+Extent bounds_of(const std::vector<Term>& terms, int degree, bool solid) {
   for (const int levels : {15, 9, 5})
-    if (const ZeroBox zeros(terms, solid, levels); zeros.found()) return zeros.box();
+    if (const ZeroBox zeros(terms, degree, solid, levels); zeros.found()) return zeros.box();
   return kAll;
 }
 
@@ -124,7 +137,7 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
   if (degree < 2 || degree > 35 || c.size() != (n + 1) * (n + 2) * (n + 3) / 6)
     context.fail(where, fmt::format("a polynomial of order {} has {} coefficients, found {}", degree,
                                     (n + 1) * (n + 2) * (n + 3) / 6, c.size()));
-  if (degree > 32) return left_out("polynomials here have at most degree 32");
+  if (degree > kMostDegree) return left_out("polynomials here have at most degree 32");
   std::vector<Term> terms;
   std::size_t i = 0;
   for (int x = degree; x >= 0; --x)
@@ -146,7 +159,7 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
   Shapes shapes;
   const bool has_windows = within.is_finite() && !limits.within.is_finite() && limits.are_windows && !operand;
   if (has_windows || !within.is_finite()) {
-    const Extent zeros = bounds_of(terms, operand);
+    const Extent zeros = bounds_of(terms, degree, operand);
     shapes.beyond_bounds = has_windows && reaches_end(zeros);
     if (shapes.beyond_bounds || !within.is_finite()) box = zeros;
   }
