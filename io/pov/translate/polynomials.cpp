@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/roots/root_method.h"
+
 namespace oktett::pov {
 namespace {
 
@@ -22,11 +24,9 @@ struct ValueRange {
   double lo, hi;
 };
 
-constexpr int kMostDegree = 32;
-
-/// The powers of an interval up to a degree; by products, as each box needs all of them.
+/// The powers of an interval from the first up to `degree`, by products.
 struct PowerRanges {
-  ValueRange of[kMostDegree + 1];
+  ValueRange of[roots::kMaxDegree + 1];
   PowerRanges(double lo, double hi, int degree) {
     double a = 1, b = 1;
     for (int n = 1; n <= degree; ++n) {
@@ -137,7 +137,7 @@ std::optional<Shapes> make_polynomial(Context& context, Arguments& a, int degree
   if (degree < 2 || degree > 35 || c.size() != (n + 1) * (n + 2) * (n + 3) / 6)
     context.fail(where, fmt::format("a polynomial of order {} has {} coefficients, found {}", degree,
                                     (n + 1) * (n + 2) * (n + 3) / 6, c.size()));
-  if (degree > kMostDegree) return left_out("polynomials here have at most degree 32");
+  if (degree > roots::kMaxDegree) return left_out("polynomials here have at most degree 32");
   std::vector<Term> terms;
   std::size_t i = 0;
   for (int x = degree; x >= 0; --x)
