@@ -1,10 +1,11 @@
 #pragma once
 /// \file Crossings of a function along one ray, isolated as in march.h, with pieces of the ray in lanes.
 ///
-/// A piece that tells nothing is divided into eight, in eight lanes of each instruction set, so that all find
-/// the same bits, and a ray that comes alone fills the lanes. The function is bounded, and over(t) as narrow
-/// as the mean value form. A field may have over_roughly(ends) and at_roughly(places), which enclose the same
-/// in eight lanes of floats on pieces with these nine ends and at eight places: they cost less and tell less.
+/// A piece that tells nothing, or two side by side, is divided into eight, in eight lanes of each instruction
+/// set, so that all find the same bits, and a ray that comes alone fills the lanes. The function is bounded,
+/// and over(t) as narrow as the mean value form. A field may have over_roughly(ends) and at_roughly(places),
+/// which enclose the same in eight lanes of floats on pieces with these nine ends and at eight places: they
+/// cost less and tell less.
 
 #include <algorithm>
 
@@ -30,8 +31,8 @@ class PieceMarch {
       divide(end_, std::min(end_ + step, limit));
   }
 
-  /// Calls f(x, before) for each crossing in order, which is less than `tolerance` from x or where rounding
-  /// hides the sign; `before` is the sign on its near side.
+  /// Calls f(x, before) for each crossing in order, which is less than `tolerance` from x as far as rounding
+  /// tells; `before` is the sign on its near side.
   template <class F>
   OKTETT_INLINE void each(double tolerance, F&& f) const {
     for (int i = 0; i < count_; ++i) f(refine(found_[i], tolerance), found_[i].before);
@@ -84,15 +85,21 @@ class PieceMarch {
       answer = b - a > least_ * (kLong * kPieces) ? ask_roughly(ends) : ask(ends);
     else
       answer = ask(ends);
+    const unsigned open = ~(answer.positive | answer.negative | answer.passed) & kAll;
     for (int i = 0; i < kPieces && !done_; ++i) {
       const unsigned piece = 1u << i;
       const double l = ends[i], r = ends[i + 1];
-      if ((answer.positive | answer.negative) & piece)
-        know(answer.positive & piece ? 1 : -1, answer.turns & piece ? r : l, r);
-      else if (answer.passed & piece)
-        end_ = r;
-      else
+      if (!(open & piece)) {
+        if (answer.passed & ~(answer.positive | answer.negative) & piece)
+          end_ = r;
+        else
+          know(answer.positive & piece ? 1 : -1, answer.turns & piece ? r : l, r);
+      } else if (open & piece << 1) {
+        // The first of two seldom holds what the second seems to hold, too.
+        divide(l, ends[++i + 1]);
+      } else {
         divide(l, r);
+      }
     }
   }
 
@@ -156,7 +163,7 @@ class PieceMarch {
       const double width = r - l, chord = l + width * (at_l / (at_l - at_r));
       const bool inside = l < chord && chord < r;
       if (width <= tolerance) return inside ? chord : l + width * 0.5;
-      double x[kPieces], sign[kPieces], value[kPieces];
+      double x[kPieces], value[kPieces];
       if (inside) {
         double away = width * 0.25;
         for (int i = 0; i < kPieces / 2; ++i) {
@@ -166,13 +173,13 @@ class PieceMarch {
       } else {
         for (int i = 0; i < kPieces; ++i) x[i] = l + width * ((i + 1) * (1.0 / (kPieces + 1)));
       }
-      const Interval<D> f = field_.at(D::load(x));
-      certain_sign(f).store(sign), middle(f).store(value);
-      // The signs at the ends are known, though what is asked there may not tell them.
+      // The signs at the ends are known, though what is asked there may not tell them. Between them the
+      // middle is taken: it is known far better than what is proved of it.
+      middle(field_.at(D::load(x))).store(value);
       int k = 0;
-      while (k < kPieces && (x[k] <= l || (x[k] < r && sign[k] == found.before))) ++k;
+      while (k < kPieces && (x[k] <= l || (x[k] < r && value[k] * found.before > 0))) ++k;
       const bool within = k < kPieces && x[k] < r;
-      if (within && sign[k] == 0) return x[k];
+      if (within && value[k] == 0) return x[k];
       if (k > 0 && x[k - 1] > l) l = x[k - 1], at_l = value[k - 1];
       if (within) r = x[k], at_r = value[k];
       if (!(r - l < width)) break;

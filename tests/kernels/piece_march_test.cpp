@@ -135,6 +135,26 @@ TEST(PieceMarch, GivesUpWhereNothingIsTold) {
   EXPECT_EQ(interval::uncertified_count(), before + 1);
 }
 
+/// The same, of which little is proved.
+struct VagueProduct : Product<D> {
+  static Interval<D> vague(const Interval<D>& f) { return {f.lo - D(1e-5), f.hi + D(1e-5)}; }
+  Dual<Interval<D>> over(const Interval<D>& t) const {
+    const Dual<Interval<D>> f = Product<D>::over(t);
+    return {vague(f.v), f.d};
+  }
+  Interval<D> at(const D& t) const { return vague(Product<D>::at(t)); }
+};
+
+/// Where rounding may hide the sign, the likely one is followed.
+TEST(PieceMarch, FindsPlacesBetterThanTheyAreProved) {
+  for (const double root : {0.1, 0.3, 0.7123}) {
+    const Found found = find_in<kRoom>(VagueProduct{{{root, 0.9}, 1}}, 0, 1, 1);
+    ASSERT_EQ(found.t.size(), 2u);
+    EXPECT_NEAR(found.t[0], root, 1e-10);
+    EXPECT_NEAR(found.t[1], 0.9, 1e-10);
+  }
+}
+
 /// A crossing at the end of the range is followed beyond the end if that is allowed, and no other.
 TEST(PieceMarch, SettlesTheEnd) {
   EXPECT_TRUE(find({0.5}, 1, 0, 0.5, 0.5).t.empty());
