@@ -32,6 +32,16 @@ SuperRounding rounding(double p, bool ratio, double inverse) {
   return {vague, bend, 2.1 * slope.part[0].v};
 }
 
+/// Whether the function is convex: powers of at least 1 are, and so are their sums and convex powers of
+/// these.
+/// (|x|^m + |y|^m)^q is the power mq of a norm.
+bool is_convex(const SuperquadricShape& s) {
+  if (s.form == SuperquadricShape::Form::ellipsoid) return s.p >= 1 && s.q >= 1 && s.r >= 1;
+  if (s.form != SuperquadricShape::Form::toroid || s.ratio || s.d != 0 || s.r != 1) return false;
+  const bool by_norm = s.m == s.n && s.m * s.q >= 1 + 0x1p-40;
+  return s.m >= 1 && s.n >= 1 && s.p >= 1 && (s.q >= 1 || by_norm);
+}
+
 /// A little more than computed, for the box that holds everything.
 constexpr double kGrow = 1 + 0x1p-36;
 
@@ -78,7 +88,7 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
   }
   e.q = SuperExponent(s.q), e.r = SuperExponent(s.r), e.d = s.d, e.ee = s.e * s.e;
   e.form = s.form, e.ratio = s.ratio, e.closed = s.form == SuperquadricShape::Form::hyperboloid && !s.open;
-  e.convex = s.form == SuperquadricShape::Form::ellipsoid && s.p >= 1 && s.q >= 1 && s.r >= 1;
+  e.convex = is_convex(s);
   for (int k = 0; k < 3 && e.convex; ++k) e.rounding[k] = rounding(p[k], e.ratio, e.inverse[k]);
   e.lo = lo * (1 / size), e.hi = hi * (1 / size);
   add_element(pool, e, place.to_world * Affine::scaling({size, size, size}), place);

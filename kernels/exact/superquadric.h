@@ -217,7 +217,7 @@ struct SuperquadricElement {
   Vec3d lo, hi;               ///< the box
   SuperquadricShape::Form form;
   bool ratio, closed;
-  bool convex;  ///< an ellipsoid whose function is convex along every line
+  bool convex;  ///< its function is convex along every line
 };
 
 /// The function of a superquadric along a line.
@@ -237,33 +237,56 @@ struct SuperquadricField {
   }
   OKTETT_INLINE Interval<D> at(const D& s) const { return over(Interval<D>(s)).v; }
 
-  /// Of the convex ellipsoid, for points in its box, which the line's nearest point to the origin is near.
+  /// Of a convex one, for points in its box, which the line's nearest point to the origin is near.
   template <bool kRatio>
   OKTETT_INLINE interval::Sample<D> sample(const D& s) const {
-    interval::Sample<D> f{D(-1.0), D(0.0), D(0x1p-50), D(0.0)};
-    const D *p[3] = {&line.p.x, &line.p.y, &line.p.z}, *u[3] = {&line.u.x, &line.u.y, &line.u.z};
-    for (int k = 0; k < 3; ++k) {
-      const SuperExponent& exponent = e.exponent[k];
-      const SuperRounding& rounding = e.rounding[k];
-      const D inverse(e.inverse[k]), noise(rounding.noise), rate = *u[k] * inverse;
-      const D x = (*p[k] + *u[k] * s) * inverse, size = abs(x);
-      // What rounding moves x by. Where that matters next to x itself, the slope is as good as unknown.
-      const D off = (abs(*p[k]) + abs(*u[k] * s)) * (inverse * D(0x1p-50)), relative_off = off / size;
-      const auto vague = ~(relative_off < D(rounding.vague)) & (off > D(0.0));
-      D value, slope, relative;
-      sample_power<kRatio>(size, exponent, value, slope, relative);
-      const D along = slope * rate, steep = select(vague, noise, D(2.0) * slope);
-      f.value = f.value + value;
-      f.slope = f.slope + select(x < D(0.0), -along, along);
-      f.error = f.error + value * (relative + D(0x1p-50)) + off * steep;
-      const D bend = D(rounding.bend) * relative_off + relative + D(0x1p-50);
-      f.slope_error =
-          f.slope_error + select(vague, abs(rate) * noise, select(off > D(0.0), abs(along) * bend, D(0.0)));
-    }
+    const bool toroid = !kRatio && e.form == Form::toroid;
+    interval::Sample<D> f{D(toroid ? 0.0 : -1.0), D(0.0), D(toroid ? 0.0 : 0x1p-50), D(0.0)};
+    add_term<kRatio>(line.p.x, line.u.x, 0, s, f);
+    add_term<kRatio>(line.p.y, line.u.y, 1, s, f);
+    if (toroid) f = in_ring(f);
+    add_term<kRatio>(line.p.z, line.u.z, 2, s, f);
     return f;
   }
 
  private:
+  /// Adds the power of a coordinate.
+  template <bool kRatio>
+  OKTETT_INLINE void add_term(const D& p, const D& u, int axis, const D& s, interval::Sample<D>& f) const {
+    const SuperRounding& rounding = e.rounding[axis];
+    const D inverse(e.inverse[axis]), noise(rounding.noise), rate = u * inverse;
+    const D x = (p + u * s) * inverse, size = abs(x);
+    // What rounding moves x by. Where that matters next to x itself, the slope is as good as unknown.
+    const D off = (abs(p) + abs(u * s)) * (inverse * D(0x1p-50)), relative_off = off / size;
+    const auto vague = ~(relative_off < D(rounding.vague)) & (off > D(0.0));
+    D value, slope, relative;
+    sample_power<kRatio>(size, e.exponent[axis], value, slope, relative);
+    const D along = slope * rate, steep = select(vague, noise, D(2.0) * slope);
+    f.value = f.value + value;
+    f.slope = f.slope + select(x < D(0.0), -along, along);
+    f.error = f.error + value * (relative + D(0x1p-50)) + off * steep;
+    const D bend = D(rounding.bend) * relative_off + relative + D(0x1p-50);
+    f.slope_error =
+        f.slope_error + select(vague, abs(rate) * noise, select(off > D(0.0), abs(along) * bend, D(0.0)));
+  }
+  /// Below this, powers may have been lost that are far from zero once their root is taken.
+  static constexpr double kLeastSum = 1e-200;
+  /// The power of the sum of x and y in a toroid whose ring is a point, less e^2. Where the sum is known to
+  /// few bits, about the axis, nothing is known.
+  OKTETT_INLINE interval::Sample<D> in_ring(const interval::Sample<D>& sum) const {
+    const D zero(0.0), inf(std::numeric_limits<double>::infinity()), two(2.0), p(e.q.p);
+    D value, slope, relative;
+    sample_power<false>(sum.value, e.q, value, slope, relative);
+    // Within a quarter of 1 / (1 + p) of the sum its power's slope changes by less than half.
+    const D part = sum.error / sum.value;
+    const auto vague = ~((part * (D(4.0) + D(4.0) * p) < D(1.0)) & (D(kLeastSum) < sum.value));
+    const D along = slope * sum.slope, bend = two * abs(p - D(1.0)) * part + relative + D(0x1p-50);
+    const D error =
+        two * slope * sum.error + value * (relative + D(0x1p-50)) + D(0x1p-50) * max(D(1.0), D(e.ee));
+    const D slope_error = two * slope * sum.slope_error + abs(along) * bend;
+    return {value - D(e.ee), select(vague, zero, along), select(vague, inf, error),
+            select(vague, inf, slope_error)};
+  }
   OKTETT_INLINE static Dual<Interval<D>> minus(const Dual<Interval<D>>& a, double b) {
     return {a.v - Interval<D>(D(b)), a.d};
   }

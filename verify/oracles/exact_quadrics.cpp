@@ -241,6 +241,11 @@ ExactOracle draw(CaseRandom& random) {
     s.m = exponent(random), s.n = exponent(random);
     s.q = kRatio ? 0.5 + random.unit() : 0.3 + 0.7 * random.unit(), s.r = 1 + 2 * random.unit();
     s.d = 0.5 + 0.4 * random.unit(), s.e = 0.2 + 0.3 * random.unit();
+    // A ring that is a point, as POV-Ray's superellipsoids have it.
+    if (!kRatio && random.unit() < 0.4) {
+      const double e = 2 / exponent(random), n = 2 / exponent(random);
+      s.m = s.n = 2 / e, s.q = e / n, s.p = 2 / n, s.r = 1, s.d = 0, s.e = random.unit() < 0.5 ? 1 : s.e;
+    }
     // Where the equation has no bound there is nothing to compare.
     while (!is_finite(Superquadric::reach(s)))
       s.m = 1 + random.unit(), s.n = 1 + random.unit(), s.q = 1, s.p = 1 + random.unit();
