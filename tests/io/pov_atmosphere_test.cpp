@@ -96,6 +96,9 @@ TEST_F(PovAtmosphere, ObjectsMapTheirTexturesByUv) {
             std::string::npos);
   EXPECT_EQ(look(texture).find("by_uv"), std::string::npos);
   EXPECT_EQ(look("uv_mapping off " + texture).find("by_uv"), std::string::npos);
+  // What moves the object before it has a texture moves patterns in space alone.
+  EXPECT_NE(look("scale 2 " + texture).find("transform"), std::string::npos);
+  EXPECT_EQ(look("scale 2 uv_mapping " + texture).find("transform"), std::string::npos);
 }
 
 TEST_F(PovAtmosphere, FinishesSayHowLightFallsOff) {
@@ -209,6 +212,30 @@ TEST_F(PovAtmosphere, NumbersOfImagesAreDecodedAsInPovRay) {
   EXPECT_FALSE(decoded("#version 3.6; global_settings { assumed_gamma 1 }", "png", ""));
   EXPECT_FALSE(decoded("global_settings { assumed_gamma 2.2 }", "png", ""));
   EXPECT_FALSE(decoded("global_settings { assumed_gamma srgb }", "png", ""));
+}
+
+// Without `interpolate` each pixel is a square; heights are blended always.
+TEST_F(PovAtmosphere, ImagesAreSquaresUnlessTheyAreInterpolated) {
+  dir.write("grey.ppm", "P3\n1 1\n255\n128 128 128\n");
+  const auto nearest = [&](const std::string& look) {
+    return section("sphere { 0, 1 " + look + " }", "materials").find("filter: nearest") != std::string::npos;
+  };
+  EXPECT_TRUE(nearest("pigment { image_map { ppm \"grey.ppm\" } }"));
+  EXPECT_TRUE(nearest("pigment { image_pattern { ppm \"grey.ppm\" } }"));
+  EXPECT_FALSE(nearest("pigment { image_map { ppm \"grey.ppm\" interpolate 2 } }"));
+  EXPECT_FALSE(nearest("normal { bump_map { ppm \"grey.ppm\" } }"));
+}
+
+TEST_F(PovAtmosphere, ImagesByUvAreMoved) {
+  dir.write("grey.ppm", "P3\n1 1\n255\n128 128 128\n");
+  const auto look = [&](const std::string& moves) {
+    return section("sphere { 0, 1 pigment { uv_mapping image_map { ppm \"grey.ppm\" } " + moves + " } }",
+                   "materials");
+  };
+  EXPECT_EQ(look("").find("projected"), std::string::npos);
+  const std::string moved = look("scale 0.25");
+  EXPECT_NE(moved.find("projected: {of: {file: "), std::string::npos) << moved;
+  EXPECT_NE(moved.find("transform: {scale: 0.25}, by_uv: true"), std::string::npos) << moved;
 }
 
 TEST_F(PovAtmosphere, DefaultsNeedNoHash) {

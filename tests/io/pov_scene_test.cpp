@@ -340,6 +340,9 @@ TEST(PovScene, PatternsAreTextures) {
       "{scale: 3}}}]]}}");
   EXPECT_EQ(color("average pigment_map { [1 rgb 1] [3 rgb x] }"),
             "{over: {color: [0.75, 0, 0], filter: 1, under: [0.25, 0.25, 0.25]}}");
+  EXPECT_EQ(color("average pigment_map { [1 rgb 1] [1 planar] } scale 3"),
+            "{over: {color: {planar: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}, gain: 0.5}, filter: 1, under: "
+            "[0.5, 0.5, 0.5], transform: {scale: 3}}}");
   EXPECT_EQ(color("radial"),
             "{angular: {map: [[0, [0, 1, 1]], [0.333, [1, 1, 0]], [0.666, [1, 0, 1]], [1, [0, 1, 1]]]}}");
   EXPECT_EQ(color("magnet 2 mandel 30 color_map { [0 rgb 0] [1 rgb 1] }"),
@@ -464,6 +467,13 @@ TEST(PovScene, MeansOfTexturesAndNormals) {
       "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
       "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: "
       "0.05}}}}}");
+  // What is around normals makes them higher as it makes them wider.
+  for (const char* const map : {"average normal_map { [1 gradient y 0.75] }",
+                                "gradient x normal_map { [0 gradient y 0.75] [1 gradient y 0.75] }"}) {
+    const std::string text = material(std::string("pigment { rgb 1 } normal { ") + map + " scale 2 }");
+    EXPECT_NE(text.find("{linear: {direction: [0, 1, 0]}, gain: 0.2}"), std::string::npos) << text;
+    EXPECT_NE(text.find("transform: {scale: 2}"), std::string::npos) << text;
+  }
 }
 
 TEST(PovScene, SkiesArePatternsOfDirections) {

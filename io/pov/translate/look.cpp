@@ -115,7 +115,7 @@ class MaterialWriter {
     if (pattern.word == "average") {
       std::vector<WeightedNode> all;
       for (std::size_t i = 0; i < values.size(); ++i) all.push_back({look.entries[i].at, values[i]});
-      if (const Node mean = mean_node(tree_, where_, all)) return mean;
+      if (const Node mean = mean_node(context_, pattern, all)) return mean;
     }
     if (pattern.key.empty() || pattern.key == "projected") {
       context_.tell(fmt::format("texture pattern {}", pattern.word), pattern.where,
@@ -364,7 +364,7 @@ Look Wardrobe::look_of(const Dress& dress, const std::shared_ptr<const Block>& d
   if (!dress.to_texture.is_invertible()) return look;
   Moves moves;
   moves.add({Move::Kind::matrix, {}, dress.to_texture.inverse(), {}});
-  look.move(moves);
+  look.move_in_space(moves);
   return look;
 }
 

@@ -150,8 +150,8 @@ Node slopes_node(Context& context, const Normal& n) {
   return values;
 }
 
-Node nested_node(Context& context, const Place& where, const Normal& n) {
-  const Node node = normal_node(context, n);
+Node nested_node(Context& context, const Place& where, const Normal& n, double scale) {
+  const Node node = normal_node(context, n, scale);
   return node != nullptr ? node : context.tree.number(where, 0);
 }
 
@@ -161,14 +161,15 @@ void read_normal(Context& context, const Block& block, Normal& normal) {
   NormalReader(context).read(block, normal);
 }
 
-Node normal_node(Context& context, const Normal& n) {
+Node normal_node(Context& context, const Normal& n, double scale) {
   const PovPattern& p = n.pattern;
   if (p.is_none() || (n.amount == 0 && n.normals.empty())) return nullptr;
+  scale *= scale_of(p);
   if (p.word == "average") {
     std::vector<WeightedNode> all;
     for (const NormalEntry& entry : n.normals)
-      all.push_back({entry.at, nested_node(context, p.where, *entry.normal)});
-    const Node mean = mean_node(context.tree, p.where, all);
+      all.push_back({entry.at, nested_node(context, p.where, *entry.normal, scale)});
+    const Node mean = mean_node(context, p, all);
     return mean != nullptr && mean->kind == YamlKind::map ? mean : nullptr;
   }
   if (p.key.empty()) {
@@ -180,7 +181,7 @@ Node normal_node(Context& context, const Normal& n) {
   if (!n.normals.empty()) {
     const Node values = tree.list(p.where);
     for (const NormalEntry& entry : n.normals) {
-      const Node inner = nested_node(context, p.where, *entry.normal);
+      const Node inner = nested_node(context, p.where, *entry.normal, scale);
       if (p.is_list)
         Tree::push(values, inner);
       else
@@ -194,7 +195,7 @@ Node normal_node(Context& context, const Normal& n) {
   copy->items = node->items;
   const bool has_own = n.slopes.empty();
   tree.put(copy, "gain",
-           tree.number(p.where, (has_own ? strength_of(p.word) : kStrength) * n.amount * scale_of(p)));
+           tree.number(p.where, (has_own ? strength_of(p.word) : kStrength) * n.amount * scale));
   return copy;
 }
 

@@ -28,7 +28,7 @@ struct Normal {
 void read_normal(Context& context, const Block& block, Normal& normal);
 
 /// Its heights as a texture for `map_bump`; null if it bends nothing, or, after a warning, if scene files
-/// have no such pattern.
-Node normal_node(Context& context, const Normal& normal);
+/// have no such pattern. `scale` is that of what it is nested in.
+Node normal_node(Context& context, const Normal& normal, double scale = 1);
 
 }  // namespace oktett::pov

@@ -516,6 +516,8 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   std::optional<Place> once;
   // Numbers of some kinds of files are taken as they are, and so are all in scenes of before 3.7.
   bool decoded = context_.document.version >= 3.7;
+  // Heights are blended always, as what is between them tilts the surface.
+  bool blended = block.keyword == "bump_map";
   while (!a.at_end()) {
     const Place where = a.where();
     const Element& element = a.take();
@@ -532,6 +534,8 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
     } else if (word->text == "once") {
       once = where;
+    } else if (word->text == "interpolate") {
+      blended = true;
     } else if (word->text == "ppm" || word->text == "pgm" || word->text == "tiff") {
       decoded = false;
     } else if (word->text == "gamma") {
@@ -541,6 +545,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   // Where light is computed in the screen's gamma, decoded numbers are those of the file, too.
   if (p.image != nullptr && (!decoded || context_.gamma > 1.6))
     tree.put(p.image, "color_space", tree.word(p.where, "linear"));
+  if (p.image != nullptr && !blended) tree.put(p.image, "filter", tree.word(p.where, "nearest"));
   p.once = once && onto == "planar";
   if (once && !p.once)
     context_.tell("once", *once, "'once' of an image that is not planar has no meaning here: it repeats");
@@ -583,7 +588,7 @@ Node pattern_node(Context& context, const PovPattern& p, Node values) {
     repeated.once = false;
     return once_node(context, p, pattern_node(context, repeated, values), tree.number(where, 0));
   }
-  if (p.image != nullptr && p.uses_uv) return p.image;
+  if (p.image != nullptr && p.uses_uv && !p.is_moved()) return p.image;
   const Node keys = tree.map(where);
   if (p.own != nullptr) keys->items = p.own->items;
   if (values != nullptr) tree.put(keys, p.is_list ? "colors" : "map", values);

@@ -32,6 +32,7 @@ struct PovPattern {
   double exponent = 1, frequency = 1, phase = 0;
 
   bool is_none() const { return word.empty(); }
+  bool is_moved() const { return !modifiers.empty() || !(turbulence == Vec3d{0, 0, 0}); }
   void move(const Moves& moves);
 };
 

@@ -312,7 +312,7 @@ Node average_node(Context& context, const Place& where, const Pigment& p, const 
   std::vector<WeightedNode> all;
   for (const PigmentEntry& entry : p.entries)
     all.push_back({entry.at, entry_node(context, where, entry, part)});
-  return mean_node(context.tree, where, all);
+  return mean_node(context, p.pattern, all);
 }
 
 /// A value of a material times a number.
@@ -359,9 +359,19 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   return copy;
 }
 
+/// `above` and a part of what is below.
+Node over_node(Tree& tree, const Place& where, Node above, double filter, Node below) {
+  const Node keys = tree.map(where);
+  tree.put(keys, "color", above), tree.put(keys, "filter", tree.number(where, filter)),
+      tree.put(keys, "under", below);
+  return tree.map(where, "over", keys);
+}
+
 }  // namespace
 
-Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& nodes) {
+Node mean_node(Context& context, const PovPattern& average, const std::vector<WeightedNode>& nodes) {
+  Tree& tree = context.tree;
+  const Place& where = average.where;
   double sum = 0;
   for (const WeightedNode& node : nodes) sum += node.weight;
   if (!(sum > 0)) return nullptr;
@@ -369,15 +379,17 @@ Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& 
   for (const WeightedNode& node : nodes) {
     const Node part = scaled(tree, where, *node.value, node.weight / sum);
     if (all != nullptr) {
-      const Node keys = tree.map(where);
-      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)),
-          tree.put(keys, "under", all);
-      all = tree.map(where, "over", keys);
+      all = over_node(tree, where, part, 1, all);
     } else {
       all = part;
     }
   }
-  return all;
+  if (all->kind != YamlKind::map || !(average.is_moved() || average.uses_uv)) return all;
+  if (nodes.size() == 1) all = over_node(tree, where, all, 0, tree.number(where, 0));
+  PovPattern moved = average;
+  moved.key = "over", moved.own = tree.map(where);
+  moved.own->items = all->items[1]->items;
+  return pattern_node(context, moved, nullptr);
 }
 
 void read_pigment(Context& context, const Block& block, Pigment& pigment) {

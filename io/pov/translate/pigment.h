@@ -62,8 +62,9 @@ struct WeightedNode {
   double weight;
   Node value;
 };
-/// The weighted mean of colours, numbers and textures, as textures over each other. Null if nothing counts.
-Node mean_node(Tree& tree, const Place& where, const std::vector<WeightedNode>& nodes);
+/// The weighted mean of colours, numbers and textures, as textures over each other, moved as `average` is.
+/// Null if nothing counts.
+Node mean_node(Context& context, const PovPattern& average, const std::vector<WeightedNode>& nodes);
 
 /// The colours of a block `pigment` as a texture or a colour; null if it has one colour.
 Node pigment_texture(Context& context, const Block& block);

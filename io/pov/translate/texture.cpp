@@ -4,15 +4,26 @@
 
 namespace oktett::pov {
 
-void Look::move(const Moves& moves) {
-  if (moves.empty()) return;
-  if (!layers.empty()) {
-    for (Look& layer : layers) layer.move(moves);
-  } else if (!entries.empty()) {
-    pattern.move(moves);
+/// Calls f for each pattern that what is said behind a look moves.
+template <class F>
+static void for_each_moved(Look& look, const F& f) {
+  if (!look.layers.empty()) {
+    for (Look& layer : look.layers) for_each_moved(layer, f);
+  } else if (!look.entries.empty()) {
+    f(look.pattern);
   } else {
-    pigment.pattern.move(moves), normal.pattern.move(moves);
+    f(look.pigment.pattern), f(look.normal.pattern);
   }
+}
+
+void Look::move(const Moves& moves) {
+  if (!moves.empty()) for_each_moved(*this, [&](PovPattern& p) { p.move(moves); });
+}
+
+void Look::move_in_space(const Moves& moves) {
+  for_each_moved(*this, [&](PovPattern& p) {
+    if (!p.uses_uv) p.move(moves);
+  });
 }
 
 namespace {

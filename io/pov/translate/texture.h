@@ -26,6 +26,8 @@ struct Look {
 
   bool is_plain() const { return entries.empty() && layers.empty(); }
   void move(const Moves& moves);
+  /// The same of an object's moves, which what lies by uv does not feel.
+  void move_in_space(const Moves& moves);
 };
 
 struct TextureEntry {
