@@ -14,6 +14,8 @@ namespace {
 
 /// zlib's Z_DEFAULT_STRATEGY makes files a tenth smaller than what libpng chooses, in the same time.
 constexpr int kStrategy = 0;
+/// Takes half the time of zlib's usual level 6, for files that are 2 to 16 % larger.
+constexpr int kDeflateLevel = 4;
 
 /// The state of libpng for one picture. No exception may pass through libpng, which is C code. Instead, a
 /// callback keeps the error here and jumps back to try_to_write().
@@ -44,6 +46,7 @@ class PngWriter {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_compression_strategy(png_, kStrategy);
+    png_set_compression_level(png_, kDeflateLevel);
     const bool words = !image.words.empty(), grey = image.channels == 1;
     png_set_IHDR(png_, info_, image.width, image.height, words ? 16 : 8,
                  grey                  ? PNG_COLOR_TYPE_GRAY
