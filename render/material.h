@@ -23,18 +23,22 @@ enum class TextureColors : std::uint8_t { of_file, srgb, linear };
 
 /// What an image shows beyond its edges.
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
-/// That along u and v.
-struct TextureWraps {
+/// What an image shows between the middles of its pixels where they are larger than those of the picture: a
+/// blend of the four about a place, or the one that the place is in.
+enum class TextureFilter : std::uint8_t { linear, nearest };
+/// How an image is looked up.
+struct TextureLookup {
   TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
-  bool operator==(const TextureWraps&) const = default;
+  TextureFilter magnified = TextureFilter::linear;
+  bool operator==(const TextureLookup&) const = default;
 };
-inline constexpr TextureWraps kClampedTexture{TextureWrap::clamp, TextureWrap::clamp};
+inline constexpr TextureLookup kClampedTexture{TextureWrap::clamp, TextureWrap::clamp};
 
 /// An image file and how it is laid over the uv square, a pattern, or an attribute of meshes. ImageTextures
 /// reads the file.
 struct Texture {
   std::string path;                         ///< of the image; else empty
-  TextureWraps wrap{};                      ///< beyond the edges (MTL `-clamp on`: clamped)
+  TextureLookup lookup{};                   ///< beyond the edges (MTL `-clamp on`: clamped) and close up
   Vec3f offset{0, 0, 0};                    ///< added to uv after scaling and turning (MTL `-o`)
   Vec3f scale{1, 1, 1};                     ///< multiplies uv (MTL `-s`)
   float rotation = 0;                       ///< turns scaled uv counter-clockwise about (0, 0); radians

@@ -60,9 +60,10 @@ std::string png_of_texture(const Texture* color, const Texture* opacity) {
   Picture picture = planes_of(width, height, opacity != nullptr);
   for_each_pixel(width, height, [&](const TexturePatch& patch, std::size_t i) {
     Color c{1, 1, 1};
-    if (colors) c = colors->color(patch, color->wrap);
+    if (colors) c = colors->color(patch, color->lookup);
     if (alphas) {
-      const float a = alphas->channel(opacity->channel, patch, opacity->wrap) * opacity->gain + opacity->base;
+      const float a =
+          alphas->channel(opacity->channel, patch, opacity->lookup) * opacity->gain + opacity->base;
       picture.planes[3].values[i] = std::clamp(a, 0.0f, 1.0f);
       c = c * picture.planes[3].values[i];
     }
@@ -83,7 +84,7 @@ std::string png_of_heights(const Texture& heights, double scale, double width, d
     const auto at = [&](float s, float t) {
       TexturePatch moved = patch;
       moved.s += s, moved.t += t;
-      return static_cast<double>(map.channel(heights.channel, moved, heights.wrap));
+      return static_cast<double>(map.channel(heights.channel, moved, heights.lookup));
     };
     const Vec3d n =
         normalize(Vec3d{(at(-right, 0) - at(right, 0)) * by_s, (at(0, down) - at(0, -down)) * by_t, 1});

@@ -46,7 +46,7 @@ Value::Object transform_of(const Texture& t) {
 
 /// Whether both lie on surfaces in the same way.
 bool is_laid_alike(const Texture& a, const Texture& b) {
-  return a.scale == b.scale && a.offset == b.offset && a.rotation == b.rotation && a.wrap == b.wrap &&
+  return a.scale == b.scale && a.offset == b.offset && a.rotation == b.rotation && a.lookup == b.lookup &&
          a.uv_layer == b.uv_layer;
 }
 
@@ -353,24 +353,25 @@ int GltfMaterialWriter::texture_of(const Texture& t) {
 int GltfMaterialWriter::add_texture(const Texture& t, int image) {
   tinygltf::Texture out;
   out.source = image;
-  out.sampler = sampler(t.wrap);
+  out.sampler = sampler(t.lookup);
   model_.textures.push_back(out);
   return static_cast<int>(model_.textures.size()) - 1;
 }
 
 /// The index of a sampler in the model; -1 for the usual one.
-int GltfMaterialWriter::sampler(TextureWraps wrap) {
-  if (wrap == TextureWraps{}) return -1;
+int GltfMaterialWriter::sampler(TextureLookup lookup) {
+  if (lookup == TextureLookup{}) return -1;
   constexpr auto code = [](TextureWrap w) {
     return w == TextureWrap::clamp    ? TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE
            : w == TextureWrap::mirror ? TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT
                                       : TINYGLTF_TEXTURE_WRAP_REPEAT;
   };
+  tinygltf::Sampler made;
+  made.wrapS = code(lookup.u), made.wrapT = code(lookup.v);
+  if (lookup.magnified == TextureFilter::nearest) made.magFilter = TINYGLTF_TEXTURE_FILTER_NEAREST;
   for (std::size_t i = 0; i < model_.samplers.size(); ++i)
-    if (model_.samplers[i].wrapS == code(wrap.u) && model_.samplers[i].wrapT == code(wrap.v))
-      return static_cast<int>(i);
-  model_.samplers.emplace_back();
-  model_.samplers.back().wrapS = code(wrap.u), model_.samplers.back().wrapT = code(wrap.v);
+    if (model_.samplers[i] == made) return static_cast<int>(i);
+  model_.samplers.push_back(std::move(made));
   return static_cast<int>(model_.samplers.size()) - 1;
 }
 

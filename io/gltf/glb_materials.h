@@ -42,7 +42,7 @@ class GltfMaterialWriter {
   bool is_plain(std::uint32_t texture, ImageChannel channel) const;
   int texture(std::uint32_t index);
   int texture_of(const Texture& texture);
-  int sampler(TextureWraps wrap);
+  int sampler(TextureLookup lookup);
   int image(const Texture& texture);
   int add_image(const std::string& key, const std::string& bytes);
   int add_texture(const Texture& texture, int image);

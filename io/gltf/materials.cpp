@@ -227,7 +227,7 @@ class Materials {
     const GltfTexture& in = file_.model().textures[use.texture];
     if (in.image == kNoId) return kNoId;  // white
     Texture texture;
-    texture.wrap = in.wrap, texture.channel = channel, texture.gain = gain, texture.base = base;
+    texture.lookup = in.lookup, texture.channel = channel, texture.gain = gain, texture.base = base;
     texture.uv_layer = use.uvs == uv_sets_.second ? 1 : 0;
     texture.color_space = TextureColors::srgb;
     // Here v points up.

@@ -459,8 +459,11 @@ class GltfConversion {
              (texture.image == kNoId ? "white instead" : "the other one that it names is"));
       const std::uint32_t sampler = index(t, "sampler", samplers.size(), where, "sampler");
       if (sampler == kNoId) continue;
-      texture.wrap.u = wrap_of(whole_of(samplers[sampler], "wrapS", 0));
-      texture.wrap.v = wrap_of(whole_of(samplers[sampler], "wrapT", 0));
+      texture.lookup.u = wrap_of(whole_of(samplers[sampler], "wrapS", 0));
+      texture.lookup.v = wrap_of(whole_of(samplers[sampler], "wrapT", 0));
+      constexpr std::uint64_t kNearest = 9728;
+      if (whole_of(samplers[sampler], "magFilter", 0) == kNearest)
+        texture.lookup.magnified = TextureFilter::nearest;
     }
   }
 

@@ -239,7 +239,7 @@ inline UvSets gltf_uv_sets(const GltfMaterial& m) {
 
 struct GltfTexture {
   std::uint32_t image = kNoId;
-  TextureWraps wrap;
+  TextureLookup lookup;
 };
 
 /// An image or a buffer: in a file, a data URI or a view; a buffer with neither is that of the GLB file.

@@ -168,31 +168,41 @@ std::array<float, N> MipMap::texel(std::size_t level, std::uint32_t x, std::uint
 }
 
 template <std::size_t N>
-std::array<float, N> MipMap::bilinear(std::size_t level, float s, float t, TextureWraps wrap,
+std::array<float, N> MipMap::bilinear(std::size_t level, float s, float t, TextureLookup lookup,
                                       const Channels& channels) const {
-  const Neighbours x = neighbours(s, levels_[level].width, wrap.u),
-                   y = neighbours(t, levels_[level].height, wrap.v);
+  const Neighbours x = neighbours(s, levels_[level].width, lookup.u),
+                   y = neighbours(t, levels_[level].height, lookup.v);
   const auto row = [&](std::uint32_t i) {
     return mix(texel<N>(level, x.first, i, channels), texel<N>(level, x.second, i, channels), x.fraction);
   };
   return mix(row(y.first), row(y.second), y.fraction);
 }
 
+/// The pixel of the image that (s, t) is in.
+template <std::size_t N>
+std::array<float, N> MipMap::nearest(float s, float t, TextureLookup lookup, const Channels& channels) const {
+  const auto pixel = [](float place, std::uint32_t size, TextureWrap wrap) {
+    const Neighbours n = neighbours(place, size, wrap);
+    return n.fraction < 0.5f ? n.first : n.second;
+  };
+  return texel<N>(0, pixel(s, levels_[0].width, lookup.u), pixel(t, levels_[0].height, lookup.v), channels);
+}
+
 /// At (s, t), in levels whose pixels are as large as `size` pixels of the image, which is at least 1.
 template <std::size_t N>
-std::array<float, N> MipMap::trilinear(float size, float s, float t, TextureWraps wrap,
+std::array<float, N> MipMap::trilinear(float size, float s, float t, TextureLookup lookup,
                                        const Channels& channels) const {
   // size = 2^level * (1 + fraction)
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(size);
   const std::size_t level = (bits >> 23) - 127, last = levels_.size() - 1;
-  if (level >= last) return bilinear<N>(last, s, t, wrap, channels);
+  if (level >= last) return bilinear<N>(last, s, t, lookup, channels);
   const float fraction = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u) - 1;
-  const std::array<float, N> fine = bilinear<N>(level, s, t, wrap, channels);
-  return fraction > 0 ? mix(fine, bilinear<N>(level + 1, s, t, wrap, channels), fraction) : fine;
+  const std::array<float, N> fine = bilinear<N>(level, s, t, lookup, channels);
+  return fraction > 0 ? mix(fine, bilinear<N>(level + 1, s, t, lookup, channels), fraction) : fine;
 }
 
 template <std::size_t N>
-std::array<float, N> MipMap::filtered(const TexturePatch& p, TextureWraps wrap,
+std::array<float, N> MipMap::filtered(const TexturePatch& p, TextureLookup lookup,
                                       const Channels& channels) const {
   // The axes of the ellipse J x of all |x| = 1 are the singular vectors of J, in pixels of the image.
   const auto width = static_cast<float>(levels_[0].width), height = static_cast<float>(levels_[0].height);
@@ -200,45 +210,48 @@ std::array<float, N> MipMap::filtered(const TexturePatch& p, TextureWraps wrap,
   const float ss = sx * sx + sy * sy, st = sx * tx + sy * ty, tt = tx * tx + ty * ty;
   const float half = (ss - tt) * 0.5f, root = std::sqrt(half * half + st * st);
   const float longer = std::sqrt((ss + tt) * 0.5f + root);
-  if (!(longer > 1)) return bilinear<N>(0, p.s, p.t, wrap, channels);
+  if (!(longer > 1)) {
+    if (lookup.magnified == TextureFilter::nearest) return nearest<N>(p.s, p.t, lookup, channels);
+    return bilinear<N>(0, p.s, p.t, lookup, channels);
+  }
   const float shorter = std::max({std::abs(sx * ty - sy * tx) / longer, longer / kMostPoints, 1.0f});
   // A circle is one point, although its axes are rounded.
   const int points = static_cast<int>(std::ceil(longer / shorter - 0.01f));
   float s = half >= 0 ? half + root : st, t = half >= 0 ? st : root - half;
   const float length = std::sqrt(s * s + t * t);
-  if (points <= 1 || !(length > 0)) return trilinear<N>(shorter, p.s, p.t, wrap, channels);
+  if (points <= 1 || !(length > 0)) return trilinear<N>(shorter, p.s, p.t, lookup, channels);
   s = s / length * longer / width;
   t = t / length * longer / height;
   const auto count = static_cast<float>(points);
   std::array<float, N> sum{};
   for (int i = 0; i < points; ++i) {
     const float at = (static_cast<float>(i) + 0.5f) / count - 0.5f;
-    const std::array<float, N> point = trilinear<N>(shorter, p.s + at * s, p.t + at * t, wrap, channels);
+    const std::array<float, N> point = trilinear<N>(shorter, p.s + at * s, p.t + at * t, lookup, channels);
     for (std::size_t c = 0; c < N; ++c) sum[c] += point[c];
   }
   for (float& v : sum) v /= count;
   return sum;
 }
 
-Color MipMap::colors(const TexturePatch& patch, TextureWraps wrap, const Channels& channels) const {
+Color MipMap::colors(const TexturePatch& patch, TextureLookup lookup, const Channels& channels) const {
   if (colors_ == 1) {
-    const float grey = filtered<1>(patch, wrap, channels)[0];
+    const float grey = filtered<1>(patch, lookup, channels)[0];
     return {grey, grey, grey};
   }
-  const std::array<float, 3> rgb = filtered<3>(patch, wrap, channels);
+  const std::array<float, 3> rgb = filtered<3>(patch, lookup, channels);
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-Color MipMap::color(const TexturePatch& patch, TextureWraps wrap) const {
-  return colors(patch, wrap, {0, 0, linear_of_byte_.data()});
+Color MipMap::color(const TexturePatch& patch, TextureLookup lookup) const {
+  return colors(patch, lookup, {0, 0, linear_of_byte_.data()});
 }
 
-Color MipMap::stored(const TexturePatch& patch, TextureWraps wrap) const {
-  return colors(patch, wrap, {0, stored_at_, stored_of_byte_.data()});
+Color MipMap::stored(const TexturePatch& patch, TextureLookup lookup) const {
+  return colors(patch, lookup, {0, stored_at_, stored_of_byte_.data()});
 }
 
-float MipMap::channel(ImageChannel channel, const TexturePatch& patch, TextureWraps wrap) const {
-  if (channel == ImageChannel::luminance && colors_ == 3) return luminance(stored(patch, wrap));
+float MipMap::channel(ImageChannel channel, const TexturePatch& patch, TextureLookup lookup) const {
+  if (channel == ImageChannel::luminance && colors_ == 3) return luminance(stored(patch, lookup));
   auto place = static_cast<std::uint32_t>(channel);
   if (channel == ImageChannel::alpha) {
     if (!alpha_) return 1;
@@ -246,7 +259,7 @@ float MipMap::channel(ImageChannel channel, const TexturePatch& patch, TextureWr
   } else if (colors_ == 1) {
     place = 0;
   }
-  return filtered<1>(patch, wrap, {place, stored_at_ + place, stored_of_byte_.data()})[0];
+  return filtered<1>(patch, lookup, {place, stored_at_ + place, stored_of_byte_.data()})[0];
 }
 
 }  // namespace oktett

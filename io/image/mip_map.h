@@ -39,7 +39,8 @@ struct TexturePatch {
 ///
 /// A look-up takes the ellipse onto which a pixel of the picture falls. Along its longer axis at most 16
 /// points are averaged; each is bilinear in the two levels whose pixels are next in size to the shorter axis,
-/// and mixed linearly in that size [McCormack 1999]. A patch without changes is bilinear in the image itself.
+/// and mixed linearly in that size [McCormack 1999]. A patch without changes is bilinear in the image itself,
+/// or, as a smaller one is with TextureFilter::nearest, the one pixel that it is in.
 /// The results are the same bits on every machine.
 class MipMap {
  public:
@@ -48,11 +49,11 @@ class MipMap {
   explicit MipMap(TexelImage image);
 
   /// Linear Rec.709; grey is repeated.
-  Color color(const TexturePatch& patch, TextureWraps wrap) const;
+  Color color(const TexturePatch& patch, TextureLookup lookup) const;
   /// The colours as stored; grey is repeated.
-  Color stored(const TexturePatch& patch, TextureWraps wrap) const;
+  Color stored(const TexturePatch& patch, TextureLookup lookup) const;
   /// A channel as stored; an alpha that is not there is 1.
-  float channel(ImageChannel channel, const TexturePatch& patch, TextureWraps wrap) const;
+  float channel(ImageChannel channel, const TexturePatch& patch, TextureLookup lookup) const;
 
   /// How many levels there are, and their sizes.
   std::size_t levels() const { return levels_.size(); }
@@ -82,13 +83,15 @@ class MipMap {
   template <std::size_t N>
   std::array<float, N> texel(std::size_t level, std::uint32_t x, std::uint32_t y, const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> bilinear(std::size_t level, float s, float t, TextureWraps wrap,
+  std::array<float, N> bilinear(std::size_t level, float s, float t, TextureLookup lookup,
                                 const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> trilinear(float size, float s, float t, TextureWraps wrap, const Channels&) const;
+  std::array<float, N> nearest(float s, float t, TextureLookup lookup, const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> filtered(const TexturePatch&, TextureWraps wrap, const Channels&) const;
-  Color colors(const TexturePatch&, TextureWraps wrap, const Channels&) const;
+  std::array<float, N> trilinear(float size, float s, float t, TextureLookup lookup, const Channels&) const;
+  template <std::size_t N>
+  std::array<float, N> filtered(const TexturePatch&, TextureLookup lookup, const Channels&) const;
+  Color colors(const TexturePatch&, TextureLookup lookup, const Channels&) const;
 
   std::vector<Level> levels_;
   Column<std::uint8_t> bytes_;  ///< level 0 of an 8-bit image: the colours as stored, then alpha

@@ -55,8 +55,8 @@ struct TurnedTexture : Texture {
 
 TexturePatch patch_of(const TurnedTexture& texture, Vec2f uv, Vec2f dx, Vec2f dy) {
   const Vec2f at = texture.laid(uv), x = texture.laid(dx), y = texture.laid(dy);
-  const float s = bounded(at.x + texture.offset.x, texture.wrap.u);
-  const float t = bounded(at.y + texture.offset.y, texture.wrap.v);
+  const float s = bounded(at.x + texture.offset.x, texture.lookup.u);
+  const float t = bounded(at.y + texture.offset.y, texture.lookup.v);
   return {s, 1 - t, bounded_change(x.x), bounded_change(-x.y), bounded_change(y.x), bounded_change(-y.y)};
 }
 
@@ -85,7 +85,7 @@ class FileTextures final : public TextureSampler {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return {1, 1, 1};
     const TurnedTexture& texture = textures_[index];
-    return image->color(patch_of(texture, uv, dx, dy), texture.wrap) * texture.gain +
+    return image->color(patch_of(texture, uv, dx, dy), texture.lookup) * texture.gain +
            Color{texture.base, texture.base, texture.base};
   }
 
@@ -93,7 +93,7 @@ class FileTextures final : public TextureSampler {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return 1;
     const TurnedTexture& texture = textures_[index];
-    return image->channel(texture.channel, patch_of(texture, uv, dx, dy), texture.wrap) * texture.gain +
+    return image->channel(texture.channel, patch_of(texture, uv, dx, dy), texture.lookup) * texture.gain +
            texture.base;
   }
 
@@ -101,7 +101,7 @@ class FileTextures final : public TextureSampler {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return {0.5f, 0.5f, 1};
     const TurnedTexture& texture = textures_[index];
-    return image->stored(patch_of(texture, uv, dx, dy), texture.wrap);
+    return image->stored(patch_of(texture, uv, dx, dy), texture.lookup);
   }
 
  private:

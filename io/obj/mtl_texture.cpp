@@ -160,7 +160,7 @@ bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
   } else if (name == "-colorspace") {
     read_color_space(line, texture.color_space);
   } else if (name == "-clamp") {
-    texture.wrap = line.take() == "on" ? kClampedTexture : TextureWraps{};
+    texture.lookup = line.take() == "on" ? kClampedTexture : TextureLookup{};
   } else if (name == "-blendu" || name == "-blendv" || name == "-cc" || name == "-boost" ||
              name == "-texres" || name == "-type") {
     line.take();

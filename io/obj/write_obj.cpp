@@ -173,7 +173,7 @@ class MtlWriting {
     if (!(t.offset == Vec3f{0, 0, 0})) out_.text(" -o ").vector(t.offset);
     if (t.base != 0 || t.gain != 1) out_.text(" -mm ").number(t.base).text(" ").number(t.gain);
     if (bump != 1) out_.text(" -bm ").number(bump);
-    if (t.wrap == kClampedTexture) out_.text(" -clamp on");
+    if (t.lookup.u == TextureWrap::clamp && t.lookup.v == TextureWrap::clamp) out_.text(" -clamp on");
     constexpr const char* kChannels[] = {"r", "g", "b", "m", "l"};  // in the order of ImageChannel
     if (usual && t.channel != *usual)
       out_.text(" -imfchan ").text(kChannels[static_cast<std::size_t>(t.channel)]);

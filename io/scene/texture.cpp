@@ -79,6 +79,9 @@ struct ImageKeys {
     p.field("clamp", clamp, "extends the edge instead of repeating");
     p.field("mirror", mirror, "repeats the image and its mirror image in turn");
     p.not_both("clamp", "mirror", "an image is either clamped or mirrored", "mirror");
+    p.choice("filter", texture.lookup.magnified,
+             {{"linear", TextureFilter::linear}, {"nearest", TextureFilter::nearest}},
+             "close up: blends its pixels, or shows each as a square");
     ChannelKeys{texture.channel}.describe(p);
     p.choice(
         "color_space", texture.color_space,
@@ -87,8 +90,8 @@ struct ImageKeys {
   }
   /// Sets what is not read in place.
   void finish() {
-    if (clamp) texture.wrap = kClampedTexture;
-    if (mirror) texture.wrap = {TextureWrap::mirror, TextureWrap::mirror};
+    const TextureWrap wrap = clamp ? TextureWrap::clamp : mirror ? TextureWrap::mirror : TextureWrap::repeat;
+    texture.lookup.u = texture.lookup.v = wrap;
     texture.rotation = static_cast<float>(rotate * (std::numbers::pi / 180));
   }
 };

@@ -32,7 +32,7 @@ struct ThreeMfLook {
 struct ThreeMfImage {
   std::string path;     ///< in the package
   std::string content;  ///< of the PNG or JPEG file
-  TextureWraps wrap{};
+  TextureLookup lookup{};
 };
 
 /// An object in a place.

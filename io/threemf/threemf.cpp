@@ -56,7 +56,7 @@ class ThreeMfReading {
       Texture texture;
       texture.path = path_ + ":" + image.path;
       texture.content = std::make_shared<const std::string>(std::move(image.content));
-      texture.wrap = image.wrap;
+      texture.lookup = image.lookup;
       add(std::move(texture));
     }
     for (const ThreeMfLook& look : model_.looks) scene_.materials.push_back(material_of(look));

@@ -99,16 +99,16 @@ TEST_F(GlbFiles, PlacesOfTexturesAreTransforms) {
   const std::string image = "data:image/png;base64," + base64("\x89PNG\r\n\x1a\nno more");
   files.write(
       "in.glb",
-      out.glb(
-          "\"images\":[{\"uri\":\"" + image +
-          "\"}],\"samplers\":[{\"wrapS\":33648,\"wrapT\":33071}],\"textures\":[{\"source\":0,\"sampler\":0}],"
-          "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
-          "\"KHR_texture_transform\":{\"offset\":[0.25,0.5],\"scale\":[2,3],\"rotation\":1}}}},"
-          "\"normalTexture\":{"
-          "\"index\":0,\"texCoord\":1,\"scale\":0.5}}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
-          "\"POSITION\":0,"
-          "\"NORMAL\":1,\"TEXCOORD_0\":2,\"TEXCOORD_1\":3,\"TANGENT\":4},\"material\":0}]}],\"nodes\":[{"
-          "\"mesh\":0}]"));
+      out.glb("\"images\":[{\"uri\":\"" + image +
+              "\"}],\"samplers\":[{\"magFilter\":9728,\"wrapS\":33648,\"wrapT\":33071}],\"textures\":[{"
+              "\"source\":0,\"sampler\":0}],"
+              "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+              "\"KHR_texture_transform\":{\"offset\":[0.25,0.5],\"scale\":[2,3],\"rotation\":1}}}},"
+              "\"normalTexture\":{"
+              "\"index\":0,\"texCoord\":1,\"scale\":0.5}}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+              "\"POSITION\":0,"
+              "\"NORMAL\":1,\"TEXCOORD_0\":2,\"TEXCOORD_1\":3,\"TANGENT\":4},\"material\":0}]}],\"nodes\":[{"
+              "\"mesh\":0}]"));
   const Glb glb = written("in.glb");
   const json& material = glb.file["materials"][0];
   const json& transform =
@@ -121,13 +121,14 @@ TEST_F(GlbFiles, PlacesOfTexturesAreTransforms) {
   EXPECT_EQ(material["normalTexture"]["scale"], 0.5);
   EXPECT_EQ(glb.file["samplers"][0]["wrapS"], 33648);
   EXPECT_EQ(glb.file["samplers"][0]["wrapT"], 33071);
+  EXPECT_EQ(glb.file["samplers"][0]["magFilter"], 9728);
   EXPECT_EQ(glb.numbers("TEXCOORD_1"), (std::vector<float>{0, 0.5f, 0.5f, 0, 0, 1}));
   EXPECT_EQ(glb.numbers("TANGENT"), (std::vector<float>{1, 0, 0, 1, 0, 1, 0, 1, 1, 0, 0, 1}));
   // All of it comes back.
   const MeshFile before = load("in.glb"), after = load("a.glb");
   ASSERT_EQ(after.textures.size(), before.textures.size());
   for (std::size_t i = 0; i < before.textures.size(); ++i) {
-    EXPECT_EQ(after.textures[i].wrap, before.textures[i].wrap);
+    EXPECT_EQ(after.textures[i].lookup, before.textures[i].lookup);
     EXPECT_EQ(after.textures[i].uv_layer, before.textures[i].uv_layer);
     EXPECT_NEAR(after.textures[i].rotation, before.textures[i].rotation, 1e-6);
     EXPECT_LT(length(after.textures[i].offset - before.textures[i].offset), 1e-6);

@@ -221,7 +221,7 @@ TEST(GltfScene, Materials) {
   EXPECT_EQ(roughness.channel, ImageChannel::green);
   EXPECT_EQ(files.files.without_directory(roughness.path), "a b.jpg");
   EXPECT_FALSE(roughness.content);
-  EXPECT_EQ(roughness.wrap, kClampedTexture);
+  EXPECT_EQ(roughness.lookup, kClampedTexture);
   EXPECT_EQ(file.textures.at(p.metallic_texture).channel, ImageChannel::blue);
   EXPECT_EQ(file.textures.at(m.normal_texture).content->size(), image.size() + 300);
 }
@@ -266,9 +266,12 @@ TEST(GltfScene, SamplersWrapEachAxis) {
     for (const auto& [t, v] : codes) {
       const std::string sampler = std::string("{\"wrapS\":") + s + ",\"wrapT\":" + t + "}";
       const MeshFile file = with_material(files, material, sampler);
-      EXPECT_EQ(file.textures.at(0).wrap, (TextureWraps{u, v})) << sampler;
+      EXPECT_EQ(file.textures.at(0).lookup, (TextureLookup{u, v})) << sampler;
       EXPECT_EQ(file.warnings.size(), 0u);
     }
+  EXPECT_EQ(with_material(files, material, "{\"magFilter\":9728}").textures.at(0).lookup.magnified,
+            TextureFilter::nearest);
+  EXPECT_EQ(with_material(files, material, "{\"magFilter\":9729}").textures.at(0).lookup, TextureLookup{});
 }
 
 /// Where KHR_texture_transform looks up (u, v): offset + R (scale * uv), where the angle counts

@@ -22,29 +22,29 @@ TexelImage noise(std::uint32_t width, std::uint32_t height, std::uint32_t colors
   return image;
 }
 
-TextureWraps wraps(bool clamp) { return clamp ? kClampedTexture : TextureWraps{}; }
+TextureLookup lookup_of(bool clamp) { return clamp ? kClampedTexture : TextureLookup{}; }
 
 /// The first channel of pixel (x, y) of `image` and what is around it.
-double pixel(const TexelImage& image, long x, long y, TextureWraps wrap) {
+double pixel(const TexelImage& image, long x, long y, TextureLookup lookup) {
   const auto in = [](long i, long n, TextureWrap w) {
     const long in_one = ((i % n) + n) % n, in_two = ((i % (2 * n)) + 2 * n) % (2 * n);
     if (w == TextureWrap::mirror) return std::min(in_two, 2 * n - 1 - in_two);
     return w == TextureWrap::clamp ? std::clamp(i, 0l, n - 1) : in_one;
   };
   const auto at =
-      static_cast<std::size_t>(in(y, image.height, wrap.v) * image.width + in(x, image.width, wrap.u));
+      static_cast<std::size_t>(in(y, image.height, lookup.v) * image.width + in(x, image.width, lookup.u));
   return static_cast<double>(image.floats[at * image.channels()]);
 }
 
 /// Bilinear at (s, t), written down as the sum of all four corners.
-double bilinear(const TexelImage& image, double s, double t, TextureWraps wrap) {
+double bilinear(const TexelImage& image, double s, double t, TextureLookup lookup) {
   const double x = s * image.width - 0.5, y = t * image.height - 0.5;
   double sum = 0;
   for (const long i : {0l, 1l})
     for (const long j : {0l, 1l}) {
       const long column = std::lround(std::floor(x)) + i, row = std::lround(std::floor(y)) + j;
       sum += (1 - std::abs(x - static_cast<double>(column))) * (1 - std::abs(y - static_cast<double>(row))) *
-             pixel(image, column, row, wrap);
+             pixel(image, column, row, lookup);
     }
   return sum;
 }
@@ -63,6 +63,31 @@ TEST(MipMap, WithoutChangesBilinear) {
         const float change = i % 2 == 0 ? 0 : 0.05f;
         ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, {u, v}).x, bilinear(image, s, t, {u, v}), 6e-6)
             << s << " " << t;
+      }
+}
+
+/// A place shows the pixel that it is in; from a pixel of the picture that is larger on, both are filtered
+/// alike.
+TEST(MipMap, NearestShowsOnePixel) {
+  const TexelImage image = noise(13, 7, 1, 4);
+  const MipMap map(image);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> beyond(-2, 3);
+  constexpr TextureWrap kAll[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
+  for (int i = 0; i < 500; ++i)
+    for (const TextureWrap u : kAll)
+      for (const TextureWrap v : kAll) {
+        const float s = beyond(random), t = beyond(random);
+        const TextureLookup nearest{u, v, TextureFilter::nearest};
+        const double x = double{s} * image.width, y = double{t} * image.height;
+        // At the edge of a pixel rounding decides.
+        if (std::abs(x - std::round(x)) < 1e-4 || std::abs(y - std::round(y)) < 1e-4) continue;
+        const double is = pixel(image, std::lround(std::floor(x)), std::lround(std::floor(y)), nearest);
+        const float change = i % 2 == 0 ? 0 : 0.05f;
+        ASSERT_EQ(static_cast<double>(map.color({s, t, change, 0, 0, change}, nearest).x), is)
+            << s << " " << t;
+        const TexturePatch large{s, t, 0.3f, 0, 0, 0.5f};
+        ASSERT_EQ(map.color(large, nearest).x, map.color(large, {u, v}).x);
       }
 }
 
@@ -88,7 +113,7 @@ TEST(MipMap, LevelsAreAveragesOfBlocks) {
         const double mean = sum * width * height / (32 * 8);
         const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
         const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
-        ASSERT_NEAR(map.color(patch_of_level(image, level, s, t), wraps(true)).x, mean, 1e-6)
+        ASSERT_NEAR(map.color(patch_of_level(image, level, s, t), lookup_of(true)).x, mean, 1e-6)
             << level << " " << x << " " << y;
       }
   }
@@ -106,7 +131,7 @@ TEST(MipMap, OddSidesKeepTheMean) {
     }
     const double mean = sum / static_cast<double>(image.floats.size());
     const MipMap map(std::move(image));
-    EXPECT_NEAR(map.color({0.3f, 0.6f, 16, 0, 0, 16}, wraps(false)).x, mean, 2e-6 * mean)
+    EXPECT_NEAR(map.color({0.3f, 0.6f, 16, 0, 0, 16}, lookup_of(false)).x, mean, 2e-6 * mean)
         << width << " " << height;
   }
 }
@@ -121,7 +146,7 @@ TEST(MipMap, AnEvenImageStaysEvenWhateverThePatch) {
     const float size = std::exp2(static_cast<float>(i % 12) - 7);
     const TexturePatch patch{change(random),        change(random),        size * change(random),
                              size * change(random), size * change(random), size * change(random)};
-    const Color c = map.color(patch, wraps(i % 2 == 0));
+    const Color c = map.color(patch, lookup_of(i % 2 == 0));
     ASSERT_NEAR(c.x, 0.1f, 1e-7);
     ASSERT_NEAR(c.y, 7.3f, 5e-6);
   }
@@ -136,7 +161,7 @@ double mean_over(const TexelImage& image, const TexturePatch& p) {
       sum += bilinear(
           image, static_cast<double>(p.s) + x * static_cast<double>(p.dsdx) + y * static_cast<double>(p.dsdy),
           static_cast<double>(p.t) + x * static_cast<double>(p.dtdx) + y * static_cast<double>(p.dtdy),
-          TextureWraps{});
+          TextureLookup{});
     }
   return sum / 1024;
 }
@@ -163,8 +188,8 @@ TEST(MipMap, LongPatchesAverageAlongTheirLongerAxis) {
       const TexturePatch quarter{patch.s, patch.t, -along_y / w, along_x / h, -across_y / w, across_x / h};
       const double truth = mean_over(image, patch);
       const auto squared = [](double v) { return v * v; };
-      error += squared(static_cast<double>(map.color(patch, wraps(false)).x) - truth);
-      turned += squared(static_cast<double>(map.color(quarter, wraps(false)).x) - truth);
+      error += squared(static_cast<double>(map.color(patch, lookup_of(false)).x) - truth);
+      turned += squared(static_cast<double>(map.color(quarter, lookup_of(false)).x) - truth);
       variance += squared(truth - 0.5);
     }
     EXPECT_LT(error, 0.45 * variance) << width;
@@ -179,8 +204,9 @@ TEST(MipMap, StripesVanishAcrossAndStayAlong) {
   const MipMap map(std::move(image));
   const float white = 32.5f / 64;
   for (const float size : {4.0f, 9.0f, 15.0f}) {
-    EXPECT_NEAR(map.color({white, 0.5f, size / 64, 0, 0, 1.0f / 64}, wraps(false)).x, 0.5f, 0.13f) << size;
-    EXPECT_EQ(map.color({white, 0.5f, 1.0f / 64, 0, 0, size / 64}, wraps(false)).x, 1) << size;
+    EXPECT_NEAR(map.color({white, 0.5f, size / 64, 0, 0, 1.0f / 64}, lookup_of(false)).x, 0.5f, 0.13f)
+        << size;
+    EXPECT_EQ(map.color({white, 0.5f, 1.0f / 64, 0, 0, size / 64}, lookup_of(false)).x, 1) << size;
   }
 }
 
@@ -206,13 +232,13 @@ TEST(MipMap, KindsOfImagesAgree) {
   for (int i = 0; i < 1000; ++i) {
     const float size = std::exp2(6 * unit(random) - 5);
     const TexturePatch patch{unit(random), unit(random), size, size * unit(random), 0, size * unit(random)};
-    ASSERT_EQ(a.color(patch, wraps(false)), b.color(patch, wraps(false)));
-    ASSERT_EQ(a.stored(patch, wraps(false)), b.stored(patch, wraps(false)));
-    ASSERT_NE(a.stored(patch, wraps(false)), a.color(patch, wraps(false)));
+    ASSERT_EQ(a.color(patch, lookup_of(false)), b.color(patch, lookup_of(false)));
+    ASSERT_EQ(a.stored(patch, lookup_of(false)), b.stored(patch, lookup_of(false)));
+    ASSERT_NE(a.stored(patch, lookup_of(false)), a.color(patch, lookup_of(false)));
     for (const ImageChannel channel :
          {ImageChannel::red, ImageChannel::green, ImageChannel::blue, ImageChannel::alpha})
-      ASSERT_EQ(a.channel(channel, patch, wraps(false)), b.channel(channel, patch, wraps(false)));
-    ASSERT_EQ(a.channel(ImageChannel::blue, patch, wraps(false)), a.stored(patch, wraps(false)).z);
+      ASSERT_EQ(a.channel(channel, patch, lookup_of(false)), b.channel(channel, patch, lookup_of(false)));
+    ASSERT_EQ(a.channel(ImageChannel::blue, patch, lookup_of(false)), a.stored(patch, lookup_of(false)).z);
   }
 }
 
@@ -229,7 +255,7 @@ TEST(MipMap, BitsAreTheSameOnEveryMachine) {
     patch.dtdx = size * unit();
     patch.dsdy = size * unit();
     patch.dtdy = size * unit();
-    const Color c = map.color(patch, wraps(i % 2 == 0));
+    const Color c = map.color(patch, lookup_of(i % 2 == 0));
     for (const float v : {c.x, c.y, c.z}) hash = (hash ^ std::bit_cast<std::uint32_t>(v)) * 0x100000001b3u;
   }
   EXPECT_EQ(hash, 5509113479268296741u);

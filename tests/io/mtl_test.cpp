@@ -230,7 +230,7 @@ TEST(Mtl, TextureOptions) {
   ASSERT_EQ(mtl.textures.size(), 5u);
   Texture expected;
   expected.path = "my picture 1.png";
-  expected.wrap = kClampedTexture;
+  expected.lookup = kClampedTexture;
   expected.offset = {0.5f, 0.25f, 0};
   expected.scale = {2, 3, 4};
   expected.base = 0.1f;

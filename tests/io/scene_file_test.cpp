@@ -157,7 +157,8 @@ TEST(SceneFile, ReadsMaterials) {
       "        specular: 2, phong: 60, reflection: 0.75, transparency: 1, ior: 1.25, roughness: 0.5, "
       "metallic: 1,\n"
       "        map_color: wood.png, map_specular: wood.png, map_bump: {file: wood.png, scale: [2, 3],\n"
-      "        offset: [0.5, 0.25], clamp: true, gain: 2, base: -1}, bump_scale: 3,\n"
+      "        offset: [0.5, 0.25], clamp: true, filter: nearest,\n"
+      "        gain: 2, base: -1}, bump_scale: 3,\n"
       "        map_emission: {file: wood.png, scale: 4}, map_opacity: wood.png, map_normal: wood.png}\n");
   ASSERT_EQ(scene.materials.size(), 1u);
   const Material& m = scene.materials[0];
@@ -183,7 +184,8 @@ TEST(SceneFile, ReadsMaterials) {
   EXPECT_EQ(m.normal_texture, m.color_texture);
   EXPECT_EQ(scene.textures.at(m.emission_texture).scale, (Vec3f{4, 4, 4}));
   Texture bump;
-  bump.path = files.dir.file("wood.png"), bump.wrap = kClampedTexture;
+  bump.path = files.dir.file("wood.png"),
+  bump.lookup = {TextureWrap::clamp, TextureWrap::clamp, TextureFilter::nearest};
   bump.offset = {0.5f, 0.25f, 0}, bump.scale = {2, 3, 1}, bump.gain = 2, bump.base = -1;
   EXPECT_EQ(scene.textures.at(m.bump_texture), bump);
 }

@@ -49,7 +49,7 @@ Color red(int, int) { return {1, 0, 0}; }
 Texture texture_of(const std::string& path) {
   Texture texture;
   texture.path = path;
-  texture.wrap = kClampedTexture;
+  texture.lookup = kClampedTexture;
   return texture;
 }
 

@@ -65,7 +65,7 @@ TEST(ImageTextures, OriginIsTheLowerLeftCorner) {
 TEST(ImageTextures, RepeatAndClampBeyondTheEdge) {
   const TempDir dir;
   Texture clamped = texture_of(checkers(dir));
-  clamped.wrap = kClampedTexture;
+  clamped.lookup = kClampedTexture;
   const ImageTextures textures({texture_of(checkers(dir)), clamped});
   for (const float whole : {-3.0f, -1.0f, 1.0f, 7.0f})
     EXPECT_EQ(textures.color(0, {0.25f + whole, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0})) << whole;
@@ -74,6 +74,16 @@ TEST(ImageTextures, RepeatAndClampBeyondTheEdge) {
   // Repeating mixes the edges, clamping does not.
   EXPECT_EQ(textures.color(0, {0, 0.75f}, kNoChange, kNoChange), (Color{0.5f, 0.5f, 0}));
   EXPECT_EQ(textures.color(1, {0, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0}));
+}
+
+TEST(ImageTextures, NearestShowsSquares) {
+  const TempDir dir;
+  Texture squares = texture_of(checkers(dir));
+  squares.lookup.magnified = TextureFilter::nearest;
+  const ImageTextures textures({squares});
+  EXPECT_EQ(textures.color(0, {0.02f, 0.52f}, kNoChange, kNoChange), (Color{1, 0, 0}));
+  EXPECT_EQ(textures.color(0, {0.49f, 0.98f}, kNoChange, kNoChange), (Color{1, 0, 0}));
+  EXPECT_EQ(textures.color(0, {0.51f, 0.98f}, kNoChange, kNoChange), (Color{0, 1, 0}));
 }
 
 TEST(ImageTextures, EightBitColoursAreSrgbAndValuesAreRaw) {
@@ -383,7 +393,7 @@ TEST(ImageTextures, PathsAreTakenLiterally) {
 TEST(ImageTextures, AnyCoordinatesAreSafe) {
   const TempDir dir;
   Texture clamped = texture_of(checkers(dir));
-  clamped.wrap = kClampedTexture;
+  clamped.lookup = kClampedTexture;
   const ImageTextures textures({texture_of(checkers(dir)), clamped});
   const float inf = std::numeric_limits<float>::infinity();
   const float odd[] = {

@@ -180,7 +180,7 @@ TEST_F(ThreeMf, ColourGroupsAreColoursOfCorners) {
 std::string textured() {
   return built(
       "<m:texture2d id=\"3\" path=\"/3D/Textures/wood.png\" contenttype=\"image/png\" tilestyleu=\"mirror\" "
-      "tilestylev=\"clamp\"/>"
+      "tilestylev=\"clamp\" filter=\"nearest\"/>"
       "<m:texture2dgroup id=\"4\" texid=\"3\"><m:tex2coord u=\"0.25\" v=\"0\"/><m:tex2coord u=\"1\" "
       "v=\"0.5\"/>"
       "<m:tex2coord u=\"0\" v=\"2\"/></m:texture2dgroup>"
@@ -197,7 +197,7 @@ TEST_F(ThreeMf, ImagesAreTextures) {
   const Material& wood = scene.materials.at(shared.slots.at(mesh.material_slots[3]));
   const Texture& texture = scene.textures.at(wood.color_texture);
   EXPECT_EQ(*texture.content, "bytes of an image");
-  EXPECT_EQ(texture.wrap, (TextureWraps{TextureWrap::mirror, TextureWrap::clamp}));
+  EXPECT_EQ(texture.lookup, (TextureLookup{TextureWrap::mirror, TextureWrap::clamp, TextureFilter::nearest}));
   EXPECT_EQ(scene.materials.at(shared.slots.at(mesh.material_slots[0])).color_texture, kNoId);
   const auto uvs = corner_uvs(mesh, 3);
   EXPECT_EQ(uvs[0], (Vec2f{0.25f, 0}));

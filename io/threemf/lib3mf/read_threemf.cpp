@@ -294,7 +294,10 @@ class Reading {
             attachment);
     eModelTextureTileStyle u = MODELTEXTURETILESTYLE_WRAP, v = u;
     check(lib3mf_texture2d_gettilestyleuv(texture.get(), &u, &v), texture);
-    image.wrap = {wrap_of(u), wrap_of(v)};
+    eModelTextureFilter filter = MODELTEXTUREFILTER_AUTO;
+    check(lib3mf_texture2d_getfilter(texture.get(), &filter), texture);
+    image.lookup = {wrap_of(u), wrap_of(v),
+                    filter == MODELTEXTUREFILTER_NEAREST ? TextureFilter::nearest : TextureFilter::linear};
     return image;
   }
 
