@@ -26,6 +26,15 @@ struct Mattes;
 
 class Caustics;
 
+/// What the textures of a material ask of a hit.
+struct TextureNeeds {
+  bool any = false;         ///< there are some
+  bool uv = false;          ///< some image or pattern lies by uv
+  bool position = false;    ///< some texture is a pattern
+  bool mesh = false;        ///< some texture shows an attribute of the mesh
+  bool second_uvs = false;  ///< some texture has uv_layer 1
+};
+
 struct RenderContext {
   const World* world = nullptr;
   const TextureSampler* textures = nullptr;  ///< of images; null: they are white
@@ -36,11 +45,12 @@ struct RenderContext {
   std::uint32_t full_width = 1, full_height = 1;
   FilterSampler filter;
   IntegratorSettings settings;
-  std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
-  AreaLights area_lights;                  ///< glowing surfaces, for Whitted's model
-  const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
-  const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
-  std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
+  std::vector<LightSource> lights;          ///< those that have a place or a direction, for Whitted's model
+  AreaLights area_lights;                   ///< glowing surfaces, for Whitted's model
+  const SceneLights* sampled = nullptr;     ///< all lights, for path tracing
+  const Caustics* caustics = nullptr;       ///< photons that path tracing asks for light; may be null
+  std::vector<ShadingMaterial> materials;   ///< numbered as in World::materials
+  std::vector<TextureNeeds> texture_needs;  ///< the same
   bool some_only_send_rays = false;  ///< some of `materials`, see only_sends_rays(); for Whitted's model
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;

@@ -300,23 +300,15 @@ Vec3d attribute_slope(const Texture& t, const MeshPoint& place) {
   return (cross(c, normal) * (height(1, 0) - h) + cross(normal, b) * (height(0, 1) - h)) * (1 / square);
 }
 
-/// What the textures of a material need to know of a place beside its uv.
-struct TextureNeeds {
-  bool position = false;    ///< some texture is a pattern
-  bool mesh = false;        ///< some texture shows an attribute of the mesh
-  bool second_uvs = false;  ///< some texture has uv_layer 1
-};
+/// What the textures of one of World::materials ask.
+const TextureNeeds& needs_of(const RenderContext& context, const Material& m) {
+  return context.texture_needs[static_cast<std::size_t>(&m - context.world->materials.data())];
+}
 
-TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
-  TextureNeeds needs;
-  for_each_texture(m, [&](std::uint32_t texture) {
-    for_each_shown_texture(list, texture, [&](std::uint32_t t) {
-      needs.position = needs.position || list[t].pattern;
-      needs.mesh = needs.mesh || !list[t].attribute.empty();
-      needs.second_uvs = needs.second_uvs || list[t].uv_layer != 0;
-    });
-  });
-  return needs;
+/// Whether its textures ask more of a hit than hits in lanes know, which is enough for patterns in space.
+bool asks_frame(const RenderContext& context, const Material& m) {
+  const TextureNeeds& needs = needs_of(context, m);
+  return needs.uv || needs.mesh;
 }
 
 /// Where on its mesh, or on the points and lines of one, a hit lies.
@@ -338,7 +330,7 @@ class TexturedHit {
     place.uv = s.uv;
     place.to_viewer = normalize(-Vec3d(direction));
     set_normal(s.shading_normal);
-    const TextureNeeds needs = texture_needs(context.texture_list, m);
+    const TextureNeeds& needs = needs_of(context, m);
     if (needs.second_uvs) {
       second_ = by_second_uvs(context, s, hit);
       place.second.uv = second_->uv;
@@ -437,7 +429,7 @@ class TexturedHit {
 
 /// Where the textures of a material are looked up at a hit whose footprint is not known.
 TexturePlace texture_place(const RenderContext& context, const Material& m, const Ray& ray, const Hit& hit) {
-  if (!has_textures(m)) return {};
+  if (!needs_of(context, m).any) return {};
   return TexturedHit(context, m, surface_interaction(*context.world->accel, ray, hit), hit, ray.direction)
       .place;
 }
@@ -498,8 +490,10 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   ShadingPoint p;
   p.material = &material_of_side(context, ray, found);
   const bool by_path = traits(context.settings.kind).traces_paths;
-  const bool textured_here = has_textures(*p.material) || (by_path && is_stretched(*p.material));
-  p.surface = textured_here ? surface_interaction(*context.world->accel, ray, hit) : found;
+  const bool stretched = by_path && is_stretched(*p.material);
+  const bool textured_here = needs_of(context, *p.material).any || stretched;
+  const bool framed = stretched || asks_frame(context, *p.material);
+  p.surface = framed ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
   const Material& m = *p.material;
@@ -509,9 +503,11 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   HitFrame frame;
   if (textured_here) {
     TexturedHit textures(context, m, s, hit, ray.direction);
-    Vec3f x, y;
-    pixel_vectors(context, ray, hit, s, history, x, y);
-    textures.set_footprints(x, y);
+    if (framed) {
+      Vec3f x, y;
+      pixel_vectors(context, ray, hit, s, history, x, y);
+      textures.set_footprints(x, y);
+    }
     ns = textures.shading_normal();
     textures.set_normal(ns);
     if (by_path) frame = {textures.coat_normal(), textures.stretch()};
@@ -566,7 +562,7 @@ ShownSurface shown_surface(const ShadingPoint& p) {
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& found) {
   const Material& m = material_of_side(context, ray, found);
-  if (has_textures(m)) return shown_surface(shading_point(context, ray, hit, history, found));
+  if (needs_of(context, m).any) return shown_surface(shading_point(context, ray, hit, history, found));
   return {found, m.color, opacity_at(context, m, {})};
 }
 
@@ -637,9 +633,9 @@ StraightPassage straight_passage(const RenderContext& context, const Ray& ray, c
   std::optional<SurfaceInteraction> whole;
   std::optional<TexturedHit> textures;
   TexturePlace place;
-  if (has_textures(m)) {
-    whole = surface_interaction(*context.world->accel, ray, hit);
-    textures.emplace(context, m, *whole, hit, ray.direction);
+  if (needs_of(context, m).any) {
+    if (asks_frame(context, m)) whole = surface_interaction(*context.world->accel, ray, hit);
+    textures.emplace(context, m, whole ? *whole : s, hit, ray.direction);
     place = textures->place;
   }
   const float opacity = opacity_at(context, m, place), hole = 1 - opacity;

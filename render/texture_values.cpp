@@ -97,6 +97,21 @@ float texture_value(const RenderContext& context, std::uint32_t texture, const T
   return context.textures->value(texture, at.uv, at.dx, at.dy);
 }
 
+TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
+  TextureNeeds needs;
+  needs.any = has_textures(m);
+  for_each_texture(m, [&](std::uint32_t texture) {
+    for_each_shown_texture(list, texture, [&](std::uint32_t t) {
+      const Texture& shown = list[t];
+      needs.uv = needs.uv || (shown.pattern ? shown.pattern->by_uv : shown.attribute.empty());
+      needs.position = needs.position || shown.pattern;
+      needs.mesh = needs.mesh || !shown.attribute.empty();
+      needs.second_uvs = needs.second_uvs || shown.uv_layer != 0;
+    });
+  });
+  return needs;
+}
+
 bool has_textures(const Material& m) {
   bool some = false;
   for_each_texture(m, [&](std::uint32_t texture) { some = some || texture != kNoId; });

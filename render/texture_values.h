@@ -41,6 +41,8 @@ inline Color texture_color(const RenderContext& context, std::uint32_t texture, 
 }
 
 bool has_textures(const Material& material);
+/// What the textures of a material, numbers in `list`, ask of a hit.
+TextureNeeds texture_needs(std::span<const Texture> list, const Material& material);
 
 /// The number of a texture; 1 for kNoId.
 float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place);

@@ -9,8 +9,8 @@
 
 namespace oktett {
 
-/// An entry is for the floats that share sign, exponent and the first 23 - kShift bits of the mantissa: so few
-/// that the function gives one byte or two in succession.
+/// An entry is for the floats that share sign, exponent and the first 23 - kShift bits of the mantissa: so
+/// few that the function gives one byte or two in succession.
 template <int kShift>
 class ByteTable {
  public:

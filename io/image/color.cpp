@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/math.h"
+#include "io/image/byte_table.h"
 
 namespace oktett {
 namespace {
@@ -15,46 +16,6 @@ namespace {
 std::uint8_t rounded_srgb(float linear) {
   return static_cast<std::uint8_t>(linear_to_srgb(linear) * 255.0f + 0.5f);
 }
-
-/// rounded_srgb as a table. An entry is for the floats that share sign, exponent and the first 7 bits of the
-/// mantissa: so few that their results are one number or two in succession.
-class SrgbTable {
- public:
-  static constexpr float kFirst = 0x1p-13f;  ///< smaller numbers give 0
-
-  SrgbTable() {
-    for (std::size_t i = 0; i < kEntries; ++i) {
-      std::uint32_t low = kFirstBits + static_cast<std::uint32_t>(i << kShift), high = low + (1u << kShift);
-      const std::uint8_t number = rounded_srgb(std::bit_cast<float>(low));
-      float step = std::numeric_limits<float>::max();
-      if (rounded_srgb(std::bit_cast<float>(high - 1)) != number) {
-        // The results grow with the number, so halving finds the least float that gives the next one.
-        while (high - low > 1) {
-          const std::uint32_t middle = (low + high) / 2;
-          (rounded_srgb(std::bit_cast<float>(middle)) == number ? low : high) = middle;
-        }
-        step = std::bit_cast<float>(high);
-      }
-      entries_[i] = {step, number};
-    }
-  }
-
-  /// For kFirst <= linear < 1.
-  std::uint8_t operator()(float linear) const {
-    const Entry& entry = entries_[(std::bit_cast<std::uint32_t>(linear) - kFirstBits) >> kShift];
-    return static_cast<std::uint8_t>(entry.number + (linear >= entry.step ? 1 : 0));
-  }
-
- private:
-  static constexpr int kShift = 16;
-  static constexpr std::uint32_t kFirstBits = std::bit_cast<std::uint32_t>(kFirst);
-  static constexpr std::size_t kEntries = (std::bit_cast<std::uint32_t>(1.0f) - kFirstBits) >> kShift;
-  struct Entry {
-    float step;           ///< from here on the result is one more
-    std::uint8_t number;  ///< the result below
-  };
-  std::array<Entry, kEntries> entries_;
-};
 
 }  // namespace
 
@@ -162,9 +123,8 @@ std::uint16_t linear_to_srgb16(float linear) {
 }
 
 std::uint8_t linear_to_srgb8(float linear) {
-  static const SrgbTable table;
-  if (!std::isfinite(linear) || linear < SrgbTable::kFirst) return 0;
-  return linear < 1 ? table(linear) : 255;
+  static const ByteTable<16> table(rounded_srgb);
+  return table(linear);
 }
 
 }  // namespace oktett

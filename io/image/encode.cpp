@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/image/byte_table.h"
 #include "io/image/color.h"
 
 namespace oktett {
@@ -30,10 +31,10 @@ std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
 /// Coverage in [0, 1]; NaN and infinities count as none.
 float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 0; }
 
-/// `encoded`: the number of a linear value; `most`: that of 1.
-template <class T>
+/// `shown(light)`: the number of each colour; `most`: that of 1.
+template <class T, class Shown>
 FlatImage flatten_to_srgb(const Picture& picture, bool with_alpha, std::vector<T> FlatImage::*numbers,
-                          T (*encoded)(float linear), float most) {
+                          const Shown& shown, float most) {
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const PicturePlane* alpha = with_alpha ? &color_plane(picture, "A") : nullptr;
   const std::uint32_t channels = with_alpha ? 4 : 3;
@@ -48,12 +49,39 @@ FlatImage flatten_to_srgb(const Picture& picture, bool with_alpha, std::vector<T
       const float divisor = a > 0 ? a : 1;
       const Color light{planes[0]->values[i] / divisor, planes[1]->values[i] / divisor,
                         planes[2]->values[i] / divisor};
-      const Color shown = toned(picture.tone, light);
-      for (int k = 0; k < 3; ++k) *out++ = encoded(shown[k]);
+      for (const T number : shown(light)) *out++ = number;
       if (alpha != nullptr) *out++ = static_cast<T>(a * most + 0.5f);
     }
   });
   return image;
+}
+
+/// The numbers of colours as a tone shows them.
+template <class T>
+auto shown_by(const Tone& tone, T (*encoded)(float linear)) {
+  return [&tone, encoded](const Color& light) {
+    const Color c = toned(tone, light);
+    return std::array<T, 3>{encoded(c.x), encoded(c.y), encoded(c.z)};
+  };
+}
+
+/// Whether a tone is a power of each colour for itself that ByteTable<15> can hold with sRGB's curve.
+bool is_power(const Tone& tone) {
+  return tone.kind == ToneKind::srgb && tone.exposure == 0 && tone.gamma > 1 && tone.gamma <= 2.25;
+}
+
+FlatImage flatten_to_bytes(const Picture& picture, bool with_alpha) {
+  if (!is_power(picture.tone))
+    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown_by(picture.tone, linear_to_srgb8),
+                           255);
+  const ByteTable<15> bytes([&](float x) { return linear_to_srgb8(toned(picture.tone, {x, x, x}).x); });
+  const auto shown = [&](const Color& light) -> std::array<std::uint8_t, 3> {
+    // A colour that is not finite has no tone.
+    if (!is_finite(light))
+      return {linear_to_srgb8(light.x), linear_to_srgb8(light.y), linear_to_srgb8(light.z)};
+    return {bytes(light.x), bytes(light.y), bytes(light.z)};
+  };
+  return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown, 255);
 }
 
 }  // namespace
@@ -61,9 +89,9 @@ FlatImage flatten_to_srgb(const Picture& picture, bool with_alpha, std::vector<T
 FlatImage flatten(const Picture& picture, PixelLayout layout) {
   const bool with_alpha = layout != PixelLayout::srgb8 && picture.find("A") != nullptr;
   if (layout == PixelLayout::srgb16_alpha)
-    return flatten_to_srgb(picture, with_alpha, &FlatImage::words, linear_to_srgb16, 65535);
-  if (layout != PixelLayout::float_rgb)
-    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, linear_to_srgb8, 255);
+    return flatten_to_srgb(picture, with_alpha, &FlatImage::words, shown_by(picture.tone, linear_to_srgb16),
+                           65535);
+  if (layout != PixelLayout::float_rgb) return flatten_to_bytes(picture, with_alpha);
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   FlatImage image{picture.width, picture.height, 3, {}, {}};

@@ -30,9 +30,16 @@ Picture picture_of(const std::vector<float>& greys, double gamma) {
 
 /// Every 37th float from 2^-16 to 2, and what is no light.
 TEST(Encode, BytesAreThoseOfToneAndCurve) {
-  std::vector<float> greys{0, -0.0f, -1, 1, 0x1p-13f, std::numeric_limits<float>::infinity(),
-                           -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()};
-  for (auto bits = std::bit_cast<std::uint32_t>(0x1p-16f); bits < std::bit_cast<std::uint32_t>(2.0f); bits += 37)
+  std::vector<float> greys{0,
+                           -0.0f,
+                           -1,
+                           1,
+                           0x1p-13f,
+                           std::numeric_limits<float>::infinity(),
+                           -std::numeric_limits<float>::infinity(),
+                           std::numeric_limits<float>::quiet_NaN()};
+  for (auto bits = std::bit_cast<std::uint32_t>(0x1p-16f); bits < std::bit_cast<std::uint32_t>(2.0f);
+       bits += 37)
     greys.push_back(std::bit_cast<float>(bits));
   for (const double gamma : {0.5, 1.0, 1.001, 1.8, 2.2, 2.25, 2.5}) {
     const Picture picture = picture_of(greys, gamma);
