@@ -98,7 +98,7 @@ TEST_F(PovAtmosphere, ObjectsMapTheirTexturesByUv) {
   EXPECT_EQ(look("uv_mapping off " + texture).find("by_uv"), std::string::npos);
   // What moves the object before it has a texture moves patterns in space alone.
   EXPECT_NE(look("scale 2 " + texture).find("transform"), std::string::npos);
-  EXPECT_EQ(look("scale 2 uv_mapping " + texture).find("transform"), std::string::npos);
+  EXPECT_EQ(look("scale 2 uv_mapping " + texture), look("uv_mapping " + texture));
 }
 
 TEST_F(PovAtmosphere, FinishesSayHowLightFallsOff) {
@@ -235,7 +235,25 @@ TEST_F(PovAtmosphere, ImagesByUvAreMoved) {
   EXPECT_EQ(look("").find("projected"), std::string::npos);
   const std::string moved = look("scale 0.25");
   EXPECT_NE(moved.find("projected: {of: {file: "), std::string::npos) << moved;
-  EXPECT_NE(moved.find("transform: {scale: 0.25}, by_uv: true"), std::string::npos) << moved;
+  EXPECT_NE(moved.find("{transform: {scale: 0.25}}"), std::string::npos) << moved;
+  EXPECT_NE(moved.find("by_uv: true"), std::string::npos) << moved;
+}
+
+/// Where POV-Ray's u and v begin and which way they run.
+TEST_F(PovAtmosphere, ShapesHaveTheirOwnUv) {
+  dir.write("grey.ppm", "P3\n1 1\n255\n128 128 128\n");
+  const std::string image = "pigment { uv_mapping image_map { ppm \"grey.ppm\" } } }";
+  for (const auto& [shape, lies] :
+       {std::pair{"sphere { 0, 1 ", "scale: [1, 1], offset: [0.5, 0]"},
+        {"torus { 1, 0.25 ", "scale: [-1, -1], offset: [1, 1]"},
+        {"lathe { linear_spline 3 <0, 0>, <1, 1>, <0, 2> ", "scale: [-1, 1], offset: [0.75, 0]"},
+        {"sor { 4 <0, -1>, <1, 0>, <1, 1>, <0, 2> ", "scale: [-1, 1], offset: [0.75, 0]"}})
+    EXPECT_NE(section(shape + image, "materials").find(lies), std::string::npos)
+        << section(shape + image, "materials");
+  EXPECT_EQ(section("cylinder { 0, y, 1 " + image, "materials").find("offset"), std::string::npos);
+  const std::string pattern = section(
+      "sphere { 0, 1 pigment { uv_mapping gradient x color_map { [0 rgb 0] [1 rgb 1] } } }", "materials");
+  EXPECT_NE(pattern.find("warps: [{repeat: {width: [1, 0, 0]}}]"), std::string::npos) << pattern;
 }
 
 TEST_F(PovAtmosphere, DefaultsNeedNoHash) {

@@ -351,6 +351,27 @@ Node Wardrobe::invisible(const Place& where) {
   return name_node(where, kName);
 }
 
+namespace {
+
+/// Shapes whose u and v are not Oktett's.
+struct UvShape {
+  std::string_view word;
+  UvLayout uv;
+};
+constexpr UvShape kUvShapes[] = {{"sphere", {{1, 1}, {0.5, 0}}},
+                                 {"torus", {{-1, -1}, {1, 1}}},
+                                 {"lathe", {{-1, 1}, {0.75, 0}}},
+                                 {"sor", {{-1, 1}, {0.75, 0}}},
+                                 {"ovus", {{-1, 1}, {0.75, 0}}}};
+
+/// That of a keyword; others have no word.
+UvShape uv_shape(std::string_view keyword) {
+  const auto* const found = std::ranges::find(kUvShapes, keyword, &UvShape::word);
+  return found == std::end(kUvShapes) ? UvShape{} : *found;
+}
+
+}  // namespace
+
 Look Wardrobe::look_of(const Dress& dress, const std::shared_ptr<const Block>& default_texture) {
   Look base;
   if (default_texture != nullptr) read_look(context_, *default_texture, base);
@@ -360,6 +381,7 @@ Look Wardrobe::look_of(const Dress& dress, const std::shared_ptr<const Block>& d
   if (dress.textures.size() > 1)
     for (const auto& texture : dress.textures) read_look(context_, *texture, look.layers.emplace_back(base));
   for (const auto& finish : dress.finishes) read_look(context_, *finish, look);
+  look.lay(uv_shape(dress.shape).uv);
   if (dress.to_texture == Affine{}) return look;
   if (!dress.to_texture.is_invertible()) return look;
   Moves moves;
@@ -374,7 +396,7 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
   for (const auto& block : dress.textures) blocks.push_back(block.get());
   for (const auto& block : dress.finishes) blocks.push_back(block.get());
   const auto key = std::tuple(blocks, static_cast<const Block*>(dress.interior.get()),
-                              static_cast<const Block*>(default_texture.get()));
+                              static_cast<const Block*>(default_texture.get()), uv_shape(dress.shape).word);
   Interior interior;
   if (dress.interior) read_interior(context_, *dress.interior, interior);
   const bool is_placed = !(dress.to_texture == Affine{}) || interior.fills() || !dress.back.empty();
@@ -386,7 +408,7 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
   if (!dress.back.empty()) {
     Dress back;
     back.textures = dress.back, back.interior = dress.interior, back.to_texture = dress.to_texture;
-    back.solid = false;
+    back.solid = false, back.shape = dress.shape;
     context_.tree.put(node, "back", material(back, default_texture, where));
   }
   const auto [entry, is_new] = names_.try_emplace(flow_text(*node), "");

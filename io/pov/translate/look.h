@@ -20,6 +20,7 @@ struct Dress {
   std::vector<std::shared_ptr<const Block>> back;  ///< blocks `interior_texture`; empty: both sides alike
   std::vector<std::shared_ptr<const Block>> finishes;  ///< blocks `finish` and `normal` that stand alone
   std::shared_ptr<const Block> interior;               ///< or null
+  std::string_view shape;                              ///< the keyword of what is dressed
   Affine to_texture;  ///< from the space of the object before its transforms to that of the textures
 
   Affine interior_to_world;  ///< from the space of the interior
@@ -48,7 +49,8 @@ class Wardrobe {
   Context& context_;
   MediaWriter media_;
   std::map<std::string, std::string> names_;  ///< by what the material says
-  std::map<std::tuple<std::vector<const Block*>, const Block*, const Block*>, std::string> known_;
+  std::map<std::tuple<std::vector<const Block*>, const Block*, const Block*, std::string_view>, std::string>
+      known_;
   std::set<std::string> taken_;
 };
 

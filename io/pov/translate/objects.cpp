@@ -345,7 +345,8 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   const Modifiers m = read_modifiers(block, arguments);
   if (!shapes || shapes->parts.empty()) return std::nullopt;
   Tree& tree = context_.tree;
-  const Dress dress = dress_of(m, outer);
+  Dress dress = dress_of(m, outer);
+  dress.shape = block.keyword;
   std::vector<Built> parts;
   const bool single = shapes->parts.size() == 1;
   for (Shape& shape : shapes->parts) {

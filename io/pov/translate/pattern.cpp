@@ -569,6 +569,35 @@ double scale_of(const PovPattern& pattern) {
   return std::isfinite(scale) ? scale : 1;
 }
 
+/// Its image by the u and v of the shape.
+static Node laid_image(Tree& tree, const PovPattern& p) {
+  if (p.uv == UvLayout{}) return p.image;
+  const auto pair = [&](const std::array<double, 2>& x) {
+    const Node list = tree.list(p.where);
+    for (const double number : x) Tree::push(list, tree.number(p.where, number));
+    return list;
+  };
+  const Node image = tree.map(p.where);
+  image->items = p.image->items;
+  tree.put(image, "scale", pair(p.uv.scale)), tree.put(image, "offset", pair(p.uv.first));
+  return image;
+}
+
+/// The same pattern by Oktett's u and v.
+static PovPattern laid_pattern(Tree& tree, const PovPattern& p) {
+  PovPattern laid = p;
+  laid.uv = {};
+  const Node width = tree.map(p.where, "width", tree.vector(p.where, {1, 0, 0}));
+  laid.modifiers.emplace_back(tree.map(p.where, "repeat", width));
+  const auto [scale, first] = p.uv;
+  const Affine to_pov =
+      Affine::translation({first[0], first[1], 0}) * Affine::scaling({scale[0], scale[1], 1});
+  Moves moves;
+  moves.add({Move::Kind::matrix, {}, to_pov.inverse(), p.where});
+  laid.modifiers.emplace_back(moves);
+  return laid;
+}
+
 Node once_node(Context& context, const PovPattern& p, Node inside, Node outside) {
   Tree& tree = context.tree;
   PovPattern mask = p;
@@ -588,7 +617,8 @@ Node pattern_node(Context& context, const PovPattern& p, Node values) {
     repeated.once = false;
     return once_node(context, p, pattern_node(context, repeated, values), tree.number(where, 0));
   }
-  if (p.image != nullptr && p.uses_uv && !p.is_moved()) return p.image;
+  if (p.image != nullptr && p.uses_uv && !p.is_moved()) return laid_image(tree, p);
+  if (p.uses_uv && !(p.uv == UvLayout{})) return pattern_node(context, laid_pattern(tree, p), values);
   const Node keys = tree.map(where);
   if (p.own != nullptr) keys->items = p.own->items;
   if (values != nullptr) tree.put(keys, p.is_list ? "colors" : "map", values);

@@ -13,6 +13,12 @@
 namespace oktett::pov {
 
 /// A pattern with what displaces places in it and what becomes of its values.
+/// POV-Ray's u and v of a shape: each is `scale` times Oktett's plus `first`, and u begins again at 1.
+struct UvLayout {
+  std::array<double, 2> scale{1, 1}, first{0, 0};
+  bool operator==(const UvLayout&) const = default;
+};
+
 struct PovPattern {
   std::string_view word;  ///< that of the language; empty: there is none
   Place where;
@@ -21,6 +27,7 @@ struct PovPattern {
   Node image = nullptr;  ///< of an image, its texture by uv
   bool is_list = false;  ///< it has a list of colours in place of a map
   bool uses_uv = false;
+  UvLayout uv;
   bool once = false;         ///< of an image in the unit square of x and y: it is not repeated
   Vec3d direction{0, 1, 0};  ///< of a gradient
 

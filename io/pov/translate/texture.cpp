@@ -26,6 +26,12 @@ void Look::move_in_space(const Moves& moves) {
   });
 }
 
+void Look::lay(const UvLayout& uv) {
+  pigment.pattern.uv = normal.pattern.uv = pattern.uv = uv;
+  for (Look& layer : layers) layer.lay(uv);
+  for (TextureEntry& entry : entries) entry.look.lay(uv);
+}
+
 namespace {
 
 /// Reads textures.
