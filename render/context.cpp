@@ -118,6 +118,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.world = &world;
   c.textures = textures;
   c.texture_list = scene.textures;
+  for (const Material& material : world.materials)
+    c.texture_needs.push_back(texture_needs(c.texture_list, material));
   c.isa = isa;
   c.camera = camera_frame(scene.camera, scene.film);
   c.window = crop_window(scene.film);
@@ -139,10 +141,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   enclose_camera(scene.camera, c);
   c.background = scene.background, c.background_texture = scene.background_texture;
   c.ambient_light = scene.ambient_light;
-  for (const Material& material : world.materials) {
-    c.materials.push_back(shading_material(material, c));
-    c.texture_needs.push_back(texture_needs(c.texture_list, material));
-  }
+  for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   c.some_only_send_rays = traits(c.settings.kind).light_from_points && !c.tracks_insides &&
                           std::ranges::any_of(c.materials, &ShadingMaterial::only_sends_rays);
   if (traits(c.settings.kind).traces_paths)

@@ -101,6 +101,8 @@ TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
   TextureNeeds needs;
   needs.any = has_textures(m);
   for_each_texture(m, [&](std::uint32_t texture) {
+    // What is not in the list is an image for TextureSampler.
+    needs.uv = needs.uv || (texture != kNoId && texture >= list.size());
     for_each_shown_texture(list, texture, [&](std::uint32_t t) {
       const Texture& shown = list[t];
       needs.uv = needs.uv || (shown.pattern ? shown.pattern->by_uv : shown.attribute.empty());
