@@ -630,6 +630,8 @@ TEST(PovScene, ErrorsHaveTheirPlace) {
   EXPECT_EQ(files.error("#version 3.7;\nsphere { 0 }"), "scene.pov:2:1: expected the radius in 'sphere'");
   EXPECT_EQ(files.error("#version 3.7;\nquartic { <1, 2> }"),
             "scene.pov:2:1: a polynomial of order 4 has 35 coefficients, found 2");
+  EXPECT_EQ(files.error("#version 3.7;\njulia_fractal { }"),
+            "scene.pov:2:1: expected a vector of 4 numbers in 'julia_fractal'");
 }
 
 /// Both ways show the same bits.

@@ -381,10 +381,8 @@ class ShapeMaker {
   }
 
   std::optional<Shapes> julia() {
-    const auto c = std::get_if<Numbers>(&a_.peek().value);
-    if (a_.at_end() || c == nullptr) context_.fail(a_.where(), "expected a vector of 4 numbers");
-    const std::array<double, 5> v = c->v;
-    a_.take();
+    if (!a_.is_numbers()) context_.fail(a_.where(), "expected a vector of 4 numbers in 'julia_fractal'");
+    const std::array<double, 5> v = std::get<Numbers>(a_.take().value).v;
     double iterations = 20, slice = 0;
     std::array<double, 5> normal{0, 0, 0, 1};
     bool known = true, hypercomplex = false;
