@@ -39,9 +39,9 @@ struct TexturePatch {
 ///
 /// A look-up takes the ellipse onto which a pixel of the picture falls. Along its longer axis at most 16
 /// points are averaged; each is bilinear in the two levels whose pixels are next in size to the shorter axis,
-/// and mixed linearly in that size [McCormack 1999]. A patch without changes is bilinear in the image itself,
-/// or, as a smaller one is with TextureFilter::nearest, the one pixel that it is in.
-/// The results are the same bits on every machine.
+/// and mixed linearly in that size [McCormack 1999]. A patch smaller than a pixel of the image is bilinear
+/// in it; with TextureFilter::nearest it is the one pixel that it is in. The results are the same bits on
+/// every machine.
 class MipMap {
  public:
   /// Memory per pixel: 4/3 of 4 bytes per channel (channels that are linear as stored), at most a byte and

@@ -32,9 +32,8 @@ SuperRounding rounding(double p, bool ratio, double inverse) {
   return {vague, bend, 2.1 * slope.part[0].v};
 }
 
-/// Whether the function is convex: powers of at least 1 are, and so are their sums and convex powers of
-/// these.
-/// (|x|^m + |y|^m)^q is the power mq of a norm.
+/// Whether the function is convex along every line. Powers of at least 1 are, and so are their sums and
+/// convex powers of those; (|x|^m + |y|^m)^q is the power mq of a norm.
 bool is_convex(const SuperquadricShape& s) {
   if (s.form == SuperquadricShape::Form::ellipsoid) return s.p >= 1 && s.q >= 1 && s.r >= 1;
   if (s.form != SuperquadricShape::Form::toroid || s.ratio || s.d != 0 || s.r != 1) return false;

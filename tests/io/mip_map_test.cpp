@@ -49,46 +49,44 @@ double bilinear(const TexelImage& image, double s, double t, TextureLookup looku
   return sum;
 }
 
-TEST(MipMap, WithoutChangesBilinear) {
-  const TexelImage image = noise(13, 7, 1, 1);
-  const MipMap map(image);
-  std::mt19937 random(2);
+/// Calls f(s, t, u, v, change) for places in and beyond the image, all ways to go on there, and changes to
+/// the next pixel of the picture that are smaller than a pixel of the image.
+template <class F>
+void for_places(unsigned seed, const F& f) {
+  std::mt19937 random(seed);
   std::uniform_real_distribution<float> beyond(-2, 3);
   constexpr TextureWrap kAll[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
   for (int i = 0; i < 500; ++i)
     for (const TextureWrap u : kAll)
       for (const TextureWrap v : kAll) {
         const float s = beyond(random), t = beyond(random);
-        // Patches smaller than a pixel are no wider.
-        const float change = i % 2 == 0 ? 0 : 0.05f;
-        ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, {u, v}).x, bilinear(image, s, t, {u, v}), 6e-6)
-            << s << " " << t;
+        f(s, t, u, v, i % 2 == 0 ? 0.0f : 0.05f);
       }
 }
 
-/// A place shows the pixel that it is in; from a pixel of the picture that is larger on, both are filtered
-/// alike.
+TEST(MipMap, WithoutChangesBilinear) {
+  const TexelImage image = noise(13, 7, 1, 1);
+  const MipMap map(image);
+  for_places(2, [&](float s, float t, TextureWrap u, TextureWrap v, float change) {
+    ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, {u, v}).x, bilinear(image, s, t, {u, v}), 6e-6)
+        << s << " " << t;
+  });
+}
+
+/// A place shows the pixel that it is in. Where pixels of the picture are larger, both filters are alike.
 TEST(MipMap, NearestShowsOnePixel) {
   const TexelImage image = noise(13, 7, 1, 4);
   const MipMap map(image);
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> beyond(-2, 3);
-  constexpr TextureWrap kAll[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
-  for (int i = 0; i < 500; ++i)
-    for (const TextureWrap u : kAll)
-      for (const TextureWrap v : kAll) {
-        const float s = beyond(random), t = beyond(random);
-        const TextureLookup nearest{u, v, TextureFilter::nearest};
-        const double x = double{s} * image.width, y = double{t} * image.height;
-        // At the edge of a pixel rounding decides.
-        if (std::abs(x - std::round(x)) < 1e-4 || std::abs(y - std::round(y)) < 1e-4) continue;
-        const double is = pixel(image, std::lround(std::floor(x)), std::lround(std::floor(y)), nearest);
-        const float change = i % 2 == 0 ? 0 : 0.05f;
-        ASSERT_EQ(static_cast<double>(map.color({s, t, change, 0, 0, change}, nearest).x), is)
-            << s << " " << t;
-        const TexturePatch large{s, t, 0.3f, 0, 0, 0.5f};
-        ASSERT_EQ(map.color(large, nearest).x, map.color(large, {u, v}).x);
-      }
+  for_places(5, [&](float s, float t, TextureWrap u, TextureWrap v, float change) {
+    const TextureLookup nearest{u, v, TextureFilter::nearest};
+    const double x = double{s} * image.width, y = double{t} * image.height;
+    // At the edge of a pixel rounding decides.
+    if (std::abs(x - std::round(x)) < 1e-4 || std::abs(y - std::round(y)) < 1e-4) return;
+    const double is = pixel(image, std::lround(std::floor(x)), std::lround(std::floor(y)), nearest);
+    ASSERT_EQ(static_cast<double>(map.color({s, t, change, 0, 0, change}, nearest).x), is) << s << " " << t;
+    const TexturePatch large{s, t, 0.3f, 0, 0, 0.5f};
+    ASSERT_EQ(map.color(large, nearest).x, map.color(large, {u, v}).x);
+  });
 }
 
 /// A patch whose pixels are those of a level.

@@ -165,12 +165,9 @@ class MaterialWriter {
           below = colors(l.layers[i], part, is_sum);
           continue;
         }
-        const Node keys = tree_.map(where_);
-        tree_.put(keys, "color",
-                  is_sum ? colors(l.layers[i], part, true) : color_node(tree_, where_, {0, 0, 0}));
-        tree_.put(keys, "filter", colors(l.layers[i], {through_of}, false));
-        tree_.put(keys, "under", below);
-        below = tree_.map(where_, "over", keys);
+        const Node color = is_sum ? colors(l.layers[i], part, true) : color_node(tree_, where_, {0, 0, 0});
+        const Node filter = colors(l.layers[i], {through_of}, false);
+        below = over_node(tree_, where_, color, filter, below);
       }
       return below;
     };

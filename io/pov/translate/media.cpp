@@ -178,10 +178,7 @@ class MediumNode {
  private:
   /// Two textures that multiply each other.
   Node product(Node a, Node b) {
-    const Node keys = tree_.map(where_);
-    tree_.put(keys, "color", color_node(tree_, where_, {0, 0, 0}));
-    tree_.put(keys, "filter", a), tree_.put(keys, "under", b);
-    return tree_.map(where_, "over", keys);
+    return over_node(tree_, where_, color_node(tree_, where_, {0, 0, 0}), a, b);
   }
 
   void put_color(const char* key, const Vec3d& rgb) {

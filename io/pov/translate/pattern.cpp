@@ -561,6 +561,12 @@ void push_entry(Tree& tree, const Place& where, Node map, double at, Node value)
   Tree::push(map, item);
 }
 
+Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under) {
+  const Node keys = tree.map(where);
+  tree.put(keys, "color", color), tree.put(keys, "filter", filter), tree.put(keys, "under", under);
+  return tree.map(where, "over", keys);
+}
+
 double scale_of(const PovPattern& pattern) {
   double volume = 1;
   for (const auto& modifier : pattern.modifiers)
@@ -594,7 +600,7 @@ static PovPattern laid_pattern(Tree& tree, const PovPattern& p) {
       Affine::translation({first[0], first[1], 0}) * Affine::scaling({scale[0], scale[1], 1});
   Moves moves;
   moves.add({Move::Kind::matrix, {}, to_pov.inverse(), p.where});
-  laid.modifiers.emplace_back(moves);
+  laid.move(moves);
   return laid;
 }
 

@@ -89,6 +89,9 @@ class PatternReader {
 /// Adds an entry [at, value] to the `map` of a pattern.
 void push_entry(Tree& tree, const Place& where, Node map, double at, Node value);
 
+/// `color`, and `under` as far as `filter` lets it through; each a colour, a number or a texture.
+Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under);
+
 /// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
 /// its values are numbers.
 Node pattern_node(Context& context, const PovPattern& pattern, Node values);

@@ -359,14 +359,6 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   return copy;
 }
 
-/// `above` and a part of what is below.
-Node over_node(Tree& tree, const Place& where, Node above, double filter, Node below) {
-  const Node keys = tree.map(where);
-  tree.put(keys, "color", above), tree.put(keys, "filter", tree.number(where, filter)),
-      tree.put(keys, "under", below);
-  return tree.map(where, "over", keys);
-}
-
 }  // namespace
 
 Node mean_node(Context& context, const PovPattern& average, const std::vector<WeightedNode>& nodes) {
@@ -379,13 +371,14 @@ Node mean_node(Context& context, const PovPattern& average, const std::vector<We
   for (const WeightedNode& node : nodes) {
     const Node part = scaled(tree, where, *node.value, node.weight / sum);
     if (all != nullptr) {
-      all = over_node(tree, where, part, 1, all);
+      all = over_node(tree, where, part, tree.number(where, 1), all);
     } else {
       all = part;
     }
   }
   if (all->kind != YamlKind::map || !(average.is_moved() || average.uses_uv)) return all;
-  if (nodes.size() == 1) all = over_node(tree, where, all, 0, tree.number(where, 0));
+  const Node zero = tree.number(where, 0);
+  if (nodes.size() == 1) all = over_node(tree, where, all, zero, zero);
   PovPattern moved = average;
   moved.key = "over", moved.own = tree.map(where);
   moved.own->items = all->items[1]->items;

@@ -28,7 +28,7 @@ struct Look {
   void move(const Moves& moves);
   /// The same of an object's moves, which what lies by uv does not feel.
   void move_in_space(const Moves& moves);
-  /// Takes u and v of a shape.
+  /// What lies by uv lies by POV-Ray's u and v of a shape.
   void lay(const UvLayout& uv);
 };
 
