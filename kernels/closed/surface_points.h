@@ -26,6 +26,13 @@ struct SurfaceNearest {
     const auto facing = [&](const SurfaceNearest& s) { return std::abs(dot(p - s.point, s.normal)); };
     if (other.d2 < d2 || (other.d2 == d2 && facing(other) > facing(*this))) *this = other;
   }
+  /// For a closed surface and whether p is `within` it: at edges the direction to p takes the place of a
+  /// normal that does not tell on which side p is.
+  void tell_side(const Vec3d& p, bool within) {
+    const Vec3d away = p - point;
+    const double size = length(away), facing = within ? -dot(away, normal) : dot(away, normal);
+    if (size > 0 && facing < 0.5 * size) normal = away * ((within ? -1 : 1) / size);
+  }
 };
 
 // ---- Surface points at hits, in lanes.

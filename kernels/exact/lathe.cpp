@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kernels/exact/cubic.h"
+#include "kernels/exact/outline.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {
@@ -234,6 +236,7 @@ void Lathe::add(Pool& pool, const LatheShape& s, const ExactPlace& place) {
   const bool loop = first.radius == last.radius && first.height == last.height;
   e.pieces.front().cap[0] = !s.open && !loop && first.radius > 0;
   e.pieces.back().cap[1] = !s.open && !loop && last.radius > 0;
+  e.closed = !s.open || loop || (first.radius == 0 && last.radius == 0);
   const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
   for (Piece& p : e.pieces) p.most = p.most * (1 + 0x1p-20) + 0x1p-40;
   add_element(pool, e, place.to_world * own, place);
@@ -387,6 +390,42 @@ SurfaceUv Lathe::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const Vec3d along{p.x * per_rho, dy, p.z * per_rho};
   const double v = (static_cast<double>(at.piece) + 0.5 * (at.v + 1)) / pieces;
   return {turn_around_y(p), {v, along * (0.5 / (pieces * (dr * dr + dy * dy)))}};
+}
+
+/// Not only a near point, as nearest_point() finds, but the nearest of the whole piece.
+static void keep_piece(const Piece& piece, double side, const HalfPlanePoint& p, HalfPlaneNearest& best) {
+  const FlatPoint first{piece.radius[0], piece.height[0]}, last{piece.radius[1], piece.height[1]};
+  OutlinePiece curve{{first, last, last, last}, piece.degree, 0, 0};
+  if (piece.degree == 2) curve.p[1] = {piece.r[0] - piece.r[2], piece.y[0] - piece.y[2]};
+  if (piece.degree == 3) {
+    double r[4], y[4];
+    bezier_of(piece.r, r), bezier_of(piece.y, y);
+    curve.p[1] = {r[1], y[1]}, curve.p[2] = {r[2], y[2]};
+  }
+  const double s = curve.nearest({p.rho, p.z});
+  const FlatPoint at = curve.at(s).at, right = curve.right(s);
+  keep_nearer(p, {at.x, at.z}, {side * right.x, side * right.z}, best);
+}
+
+bool Lathe::is_kept_by(const Affine& to_world) { return RoundFrame(to_world, 1).is_similar(); }
+
+SurfaceNearest Lathe::closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p) {
+  const LatheElement& e = pool.elements[i];
+  RoundFrame frame(to_world, 1);
+  const double scale = frame.radial_scale();
+  const HalfPlanePoint far = frame.in_profile(p), at{far.rho / scale, far.z / scale};
+  HalfPlaneNearest best{std::numeric_limits<double>::infinity(), {}, {}};
+  for (const Piece& piece : e.pieces) {
+    if (bounds_distance2(piece, at.rho, at.z) <= best.d2 * (1 + 0x1p-40)) keep_piece(piece, e.side, at, best);
+    for (int k = 0; k < 2; ++k) {
+      if (!piece.cap[k]) continue;
+      const HalfPlanePoint axis{0, piece.height[k]}, rim{piece.radius[k], piece.height[k]};
+      (k == 0) == (e.side > 0) ? keep_segment(at, axis, rim, best) : keep_segment(at, rim, axis, best);
+    }
+  }
+  SurfaceNearest nearest = frame.scaled_in_world(best);
+  if (e.closed) nearest.tell_side(p, inside(pool, i, to_world.inverse().point(p)));
+  return nearest;
 }
 
 }  // namespace oktett

@@ -9,6 +9,7 @@
 #include "kernels/exact/lathe_data.h"
 #include "kernels/exact/line_columns.h"
 #include "kernels/exact/ray_polynomial.h"
+#include "kernels/exact/round_profile.h"
 
 namespace oktett {
 
@@ -22,6 +23,7 @@ struct LatheElement {
   };
   std::vector<Piece> pieces;
   double side;  ///< side * (y', -r') points outwards
+  bool closed;  ///< by disks, or as the curve is closed or begins and ends on the axis
 };
 
 /// Parts: 0 the surface, 1 the disk at the curve's beginning, 2 that at its end.
@@ -85,6 +87,9 @@ struct Lathe {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v along the curve, both in [0, 1].
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  /// See ExactOps::closest.
+  static SurfaceNearest closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p);
+  static bool is_kept_by(const Affine& to_world);
 
  private:
   /// A ray that rises by less than this times its way is taken as level: within the surface it goes astray by

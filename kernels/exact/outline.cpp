@@ -148,6 +148,13 @@ OutlinePoint OutlinePiece::at(double s) const {
   return {ab * r + bc * s, (bc - ab) * 3, ((d1 - d0) * r + (d2 - d1) * s) * 6};
 }
 
+FlatPoint OutlinePiece::right(double s) const {
+  FlatPoint along = at(s).slope;
+  double l = std::sqrt(dot(along, along));
+  if (!(l > 0)) along = p[3] - p[0], l = std::sqrt(dot(along, along));
+  return l > 0 ? FlatPoint{along.z / l, -along.x / l} : FlatPoint{1, 0};
+}
+
 double OutlinePiece::nearest(const FlatPoint& q) const {
   if (degree == 1) {
     const FlatPoint d = p[1] - p[0];

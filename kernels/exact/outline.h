@@ -33,6 +33,8 @@ struct OutlinePiece {
   double begin, per_one;  ///< place along the whole outline, from 0 to 1: begin + per_one s
 
   OutlinePoint at(double s) const;
+  /// The unit normal to the right of the piece at s; to that of its chord where it has no direction.
+  FlatPoint right(double s) const;
   /// The parameter of the point of the piece that is nearest to q.
   double nearest(const FlatPoint& q) const;
 };

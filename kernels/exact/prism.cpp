@@ -21,17 +21,6 @@ std::vector<OutlineRoot>& root_list() {
   return roots;
 }
 
-/// The unit normal to the right of a piece at s; along its chord where it has no direction.
-FlatPoint right_normal(const OutlinePiece& piece, double s) {
-  FlatPoint t = piece.at(s).slope;
-  double l = std::sqrt(t.x * t.x + t.z * t.z);
-  if (!(l > 0)) {
-    t = {piece.p[3].x - piece.p[0].x, piece.p[3].z - piece.p[0].z};
-    l = std::sqrt(t.x * t.x + t.z * t.z);
-  }
-  return l > 0 ? FlatPoint{t.z / l, -t.x / l} : FlatPoint{1, 0};
-}
-
 }  // namespace
 
 std::size_t PrismPool::bytes() const {
@@ -194,7 +183,7 @@ Slope Prism::slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p)
   const FlatPoint q = e.conic ? FlatPoint{p.x / p.y, p.z / p.y} : FlatPoint{p.x, p.z};
   if (!std::isfinite(q.x + q.z)) return {0, {0, 0, 0}};
   const double s = piece.nearest(q);
-  const FlatPoint at = piece.at(s).at, right = right_normal(piece, s);
+  const FlatPoint at = piece.at(s).at, right = piece.right(s);
   const FlatPoint n{side * right.x, side * right.z};
   const double value = (q.x - at.x) * n.x + (q.z - at.z) * n.z;
   if (!e.conic) return {value, {n.x, 0, n.z}};
@@ -300,11 +289,9 @@ SurfaceNearest Prism::closest(const Pool& pool, std::size_t i, const Affine& to_
   const bool within = !e.open && inside(pool, i, p);
   const auto keep = [&](const Vec3d& at, const Vec3d& normal) {
     const Vec3d there = to_world.point(at), away = world - there;
-    Vec3d n = normalize(to_own.normal_by_inverse(normal));
-    // At edges the direction to the point takes the place of a normal that does not tell where the point is.
-    const double size = length(away), facing = within ? -dot(away, n) : dot(away, n);
-    if (!e.open && size > 0 && facing < 0.5 * size) n = away * ((within ? -1 : 1) / size);
-    best.keep_nearer(world, {dot(away, away), there, n});
+    SurfaceNearest found{dot(away, away), there, normalize(to_own.normal_by_inverse(normal))};
+    if (!e.open) found.tell_side(world, within);
+    best.keep_nearer(world, found);
   };
   if (!e.open) {
     for (int end = 0; end < 2; ++end) {
@@ -315,7 +302,7 @@ SurfaceNearest Prism::closest(const Pool& pool, std::size_t i, const Affine& to_
     }
   }
   const auto keep_side = [&](const OutlinePiece& piece, double s, const Vec3d& at) {
-    const FlatPoint right = right_normal(piece, s), q = piece.at(s).at;
+    const FlatPoint right = piece.right(s), q = piece.at(s).at;
     Vec3d n{right.x, e.conic ? -(q.x * right.x + q.z * right.z) : 0, right.z};
     // Which side of the piece is outside?
     const double step = 0x1p-24 * std::max({std::abs(q.x), std::abs(q.z), 1.0});

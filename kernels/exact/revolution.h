@@ -9,6 +9,7 @@
 
 #include "kernels/exact/ray_polynomial.h"
 #include "kernels/exact/revolution_data.h"
+#include "kernels/exact/round_profile.h"
 #include "kernels/exact/segment.h"
 
 namespace oktett {
@@ -30,6 +31,7 @@ struct RevolutionElement {
   std::vector<Piece> pieces;
   int degree;    ///< of c
   bool squared;  ///< whether c gives the squared radius
+  bool closed;   ///< by disks, or as it begins and ends on the axis
 };
 
 /// Parts: 0 the surface; 1 + 2 k and 2 + 2 k the planes at height k facing down and up.
@@ -210,6 +212,9 @@ struct Revolution {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v the height, both in [0, 1].
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  /// See ExactOps::closest.
+  static SurfaceNearest closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p);
+  static bool is_kept_by(const Affine& to_world);
 
  private:
   /// What is known where a ray passes an end of a piece.

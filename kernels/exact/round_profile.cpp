@@ -9,11 +9,11 @@ static Vec3d column(const Affine& a, int k) { return {a.m[0][k], a.m[1][k], a.m[
 /// Equal but for the rounding of a few maps.
 static bool same_length(double a, double b) { return std::abs(a - b) <= 1e-12 * a; }
 
-RoundFrame::RoundFrame(const Affine& m)
+RoundFrame::RoundFrame(const Affine& m, int axis)
     : origin_(column(m, 3)),
-      x_(column(m, 0)),
-      y_(column(m, 1)),
-      z_(column(m, 2)),
+      x_(column(m, (axis + 1) % 3)),
+      y_(column(m, (axis + 2) % 3)),
+      z_(column(m, axis)),
       x_length_(length(x_)),
       y_length_(length(y_)),
       z_length_(length(z_)),
@@ -45,20 +45,33 @@ SurfaceNearest RoundFrame::in_world(const HalfPlaneNearest& nearest) const {
   return {nearest.d2, origin_ + vector(nearest.at), normalize(vector(nearest.normal))};
 }
 
-/// Takes the nearest point of the segment a, b if it is nearer. The normal is to the right of the way from a
-/// to b. Where two segments meet, that which faces the point more counts, so that the side on which the point
-/// lies follows from the normal.
-static void keep_segment(const HalfPlanePoint& p, const HalfPlanePoint& a, const HalfPlanePoint& b,
-                         HalfPlaneNearest& best) {
+SurfaceNearest RoundFrame::scaled_in_world(const HalfPlaneNearest& nearest) const {
+  const double s = x_length_;
+  return in_world({nearest.d2 * s * s, {nearest.at.rho * s, nearest.at.z * s}, nearest.normal});
+}
+
+/// The same for what is `away` from p.
+static void keep_away(const HalfPlanePoint& away, const HalfPlanePoint& at, const HalfPlanePoint& normal,
+                      HalfPlaneNearest& best) {
+  const double d2 = away.rho * away.rho + away.z * away.z;
+  const auto facing = [&](const HalfPlanePoint& n) { return std::abs(away.rho * n.rho + away.z * n.z); };
+  if (d2 < best.d2 || (d2 == best.d2 && facing(normal) > facing(best.normal))) best = {d2, at, normal};
+}
+
+void keep_nearer(const HalfPlanePoint& p, const HalfPlanePoint& at, const HalfPlanePoint& normal,
+                 HalfPlaneNearest& best) {
+  keep_away({p.rho - at.rho, p.z - at.z}, at, normal, best);
+}
+
+void keep_segment(const HalfPlanePoint& p, const HalfPlanePoint& a, const HalfPlanePoint& b,
+                  HalfPlaneNearest& best) {
   const double x = b.rho - a.rho, y = b.z - a.z, fx = p.rho - a.rho, fy = p.z - a.z;
   const double t = (fx * x + fy * y) / (x * x + y * y);
   HalfPlanePoint at = a, away{fx, fy};
   if (t >= 1) at = b, away = {p.rho - b.rho, p.z - b.z};
   if (t > 0 && t < 1) at = {a.rho + t * x, a.z + t * y}, away = {fx - t * x, fy - t * y};
-  const double d2 = away.rho * away.rho + away.z * away.z, size = std::sqrt(x * x + y * y);
-  const HalfPlanePoint normal{y / size, -x / size};
-  const auto facing = [&](const HalfPlanePoint& n) { return std::abs(away.rho * n.rho + away.z * n.z); };
-  if (d2 < best.d2 || (d2 == best.d2 && facing(normal) > facing(best.normal))) best = {d2, at, normal};
+  const double size = std::sqrt(x * x + y * y);
+  keep_away(away, at, {y / size, -x / size}, best);
 }
 
 SurfaceNearest closest_on_frustum(RoundFrame& frame, double r0, double r1, double h, bool open,

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Nearest points of surfaces of revolution: in the half-plane through the axis that holds the point
-/// asked for, the surface is a curve.
+/// \file Nearest points of surfaces that are round about an axis: in the half-plane through the axis that
+/// holds the point asked for, the surface is a curve.
 
 #include <array>
 
@@ -20,10 +20,20 @@ struct HalfPlaneNearest {
   HalfPlanePoint at, normal;
 };
 
-/// A space in which a surface is round about the z axis, as it stands in the world.
+/// Takes the point `at` if it is nearer to p than `best`. Where two pieces meet, that which faces p more
+/// counts, so that the side on which p lies follows from the normal.
+void keep_nearer(const HalfPlanePoint& p, const HalfPlanePoint& at, const HalfPlanePoint& normal,
+                 HalfPlaneNearest& best);
+/// The same for the segment from a to b, which are not one point. The normal is to the right of the way from
+/// a to b.
+void keep_segment(const HalfPlanePoint& p, const HalfPlanePoint& a, const HalfPlanePoint& b,
+                  HalfPlaneNearest& best);
+
+/// A space in which a surface is round about an axis, as it stands in the world.
 class RoundFrame {
  public:
-  explicit RoundFrame(const Affine& own_to_world);
+  /// `axis` is 0 to 2; what is said below of z is meant of that axis, and of x and y of those that follow it.
+  explicit RoundFrame(const Affine& own_to_world, int axis = 2);
 
   /// Whether the surface is still round in the world: the axes stay perpendicular, and x and y have one
   /// scale.
@@ -37,6 +47,8 @@ class RoundFrame {
   HalfPlanePoint in_profile(const Vec3d& p);
   /// The point of the profile in the half-plane of the last in_profile(), in the world.
   SurfaceNearest in_world(const HalfPlaneNearest& nearest) const;
+  /// The same for a profile in lengths of the own space; is_similar() must hold.
+  SurfaceNearest scaled_in_world(const HalfPlaneNearest& nearest) const;
 
  private:
   Vec3d origin_, x_, y_, z_;

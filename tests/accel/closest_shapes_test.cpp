@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -132,6 +134,123 @@ Sampled ovus(const char* name, double bottom, double top) {
   return s;
 }
 
+/// A part of a profile that turns about the y axis: radius and height, 0 <= u <= 1.
+using ProfilePart = std::function<ProfilePoint(double)>;
+
+ProfilePart straight(const ProfilePoint& a, const ProfilePoint& b) {
+  return [=](double u) {
+    return ProfilePoint{a.radius + u * (b.radius - a.radius), a.height + u * (b.height - a.height)};
+  };
+}
+
+ProfilePart bezier(const std::vector<ProfilePoint>& p, std::size_t first) {
+  return [=](double u) {
+    const double w = 1 - u, b[4] = {w * w * w, 3 * w * w * u, 3 * w * u * u, u * u * u};
+    ProfilePoint at{0, 0};
+    for (std::size_t k = 0; k < 4; ++k)
+      at.radius += b[k] * p[first + k].radius, at.height += b[k] * p[first + k].height;
+    return at;
+  };
+}
+
+/// Between two of four points f as a function of the height, with the slopes of the chords past each; f is
+/// the radius, or its square as POV-Ray has it.
+ProfilePart cubic(const std::vector<ProfilePoint>& p, std::size_t k, bool squared) {
+  const auto slope = [&](std::size_t i) {
+    const double s = (p[i + 1].radius - p[i - 1].radius) / (p[i + 1].height - p[i - 1].height);
+    return squared ? 2 * p[i].radius * s : s;
+  };
+  const auto f = [&](std::size_t i) { return squared ? p[i].radius * p[i].radius : p[i].radius; };
+  const double y0 = p[k].height, h = p[k + 1].height - y0, f0 = f(k), f1 = f(k + 1);
+  const double d0 = h * slope(k), d1 = h * slope(k + 1);
+  return [=](double u) {
+    const double value = f0 + u * (d0 + u * (3 * (f1 - f0) - 2 * d0 - d1 + u * (2 * (f0 - f1) + d0 + d1)));
+    return ProfilePoint{squared ? std::sqrt(std::max(value, 0.0)) : value, y0 + u * h};
+  };
+}
+
+/// What is off of a profile is measured from chords of it.
+Sampled turned(const char* name, Geometry g, const std::vector<ProfilePart>& parts) {
+  constexpr int kChords = 3000;
+  const auto chords = std::make_shared<std::vector<std::array<ProfilePoint, 2>>>();
+  for (const ProfilePart& part : parts)
+    for (int i = 0; i < kChords; ++i)
+      // Finer towards the ends, where the curve may be upright on the axis.
+      chords->push_back({part(0.5 - 0.5 * std::cos(std::numbers::pi * i / kChords)),
+                         part(0.5 - 0.5 * std::cos(std::numbers::pi * (i + 1) / kChords))});
+  Sampled s{name, std::move(g), {}, {}, {{0, 0, 0}, {0, 0.3, 0}, {0, 9, 0}, {0, -9, 0}, {0.5, 0, 0}}};
+  s.draw = [=](CaseRandom& r) {
+    const auto part =
+        std::min(parts.size() - 1, static_cast<std::size_t>(r.unit() * static_cast<double>(parts.size())));
+    const ProfilePoint p = parts[part](r.unit() < 0.1 ? std::round(r.unit()) : r.unit());
+    const double around = std::numbers::pi * r.sign();
+    return Vec3d{p.radius * std::cos(around), p.height, p.radius * std::sin(around)};
+  };
+  s.off = [=](const Vec3d& p) {
+    const double rho = std::hypot(p.x, p.z);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : *chords) {
+      const double x = b.radius - a.radius, y = b.height - a.height, l2 = x * x + y * y;
+      const double fx = rho - a.radius, fy = p.y - a.height;
+      const double t = l2 > 0 ? std::clamp((fx * x + fy * y) / l2, 0.0, 1.0) : 0.0;
+      least = std::min(least, std::hypot(fx - t * x, fy - t * y));
+    }
+    return least;
+  };
+  return s;
+}
+
+void add_turned(std::vector<Sampled>& all) {
+  using Profile = RevolutionShape::Profile;
+  const auto revolution = [](const std::vector<ProfilePoint>& points, Profile profile, bool open) {
+    return geometry(ExactShape{RevolutionShape{points, profile, open}});
+  };
+  const std::vector<ProfilePoint> steps{{0.2, -1}, {0.9, -0.3}, {0.5, -0.3}, {0.8, 0.8}};
+  all.push_back(
+      turned("revolution of lines and a step", revolution(steps, Profile::linear, false),
+             {straight(steps[0], steps[1]), straight(steps[1], steps[2]), straight(steps[2], steps[3]),
+              straight({0, -1}, steps[0]), straight(steps[3], {0, 0.8})}));
+  const std::vector<ProfilePoint> vase{{0.1, -1.6}, {0.9, -1}, {0.3, -0.4}, {1, 0.2}, {0.2, 0.9}, {0.6, 1.5}};
+  all.push_back(turned("open revolution of a spline", revolution(vase, Profile::spline, true),
+                       {cubic(vase, 1, false), cubic(vase, 2, false), cubic(vase, 3, false)}));
+  all.push_back(turned("sor", revolution(vase, Profile::sor, false),
+                       {cubic(vase, 1, true), cubic(vase, 2, true), cubic(vase, 3, true),
+                        straight({0, -1}, vase[1]), straight(vase[4], {0, 0.9})}));
+  // With slopes of 0 where the radius is 0, and others at which the squared radius is greatest inside.
+  const std::vector<ProfilePoint> drop{{0.5, -1.5}, {0, -1}, {0.9, -0.2}, {0.9, 0.4}, {0, 1}, {0.4, 1.3}};
+  all.push_back(turned("sor from axis to axis", revolution(drop, Profile::sor, true),
+                       {cubic(drop, 1, true), cubic(drop, 2, true), cubic(drop, 3, true)}));
+  const auto lathe = [](const std::vector<ProfilePoint>& points, bool open) {
+    return geometry(ExactShape{LatheShape{points, open}});
+  };
+  // Back and forth, with a disk at each end.
+  const std::vector<ProfilePoint> hook{{0.3, -1},   {1.4, -1},  {1.2, 0.6}, {0.8, 0.2},
+                                       {0.5, -0.1}, {0.7, 0.9}, {0.2, 0.8}};
+  all.push_back(
+      turned("lathe with an overhang", lathe(hook, false),
+             {bezier(hook, 0), bezier(hook, 3), straight({0, -1}, hook[0]), straight(hook[6], {0, 0.8})}));
+  all.push_back(turned("open lathe from the top", lathe({hook.rbegin(), hook.rend()}, true),
+                       {bezier(hook, 0), bezier(hook, 3)}));
+  // A ring whose section is a closed curve with a corner, a parabola in it, and a straight piece.
+  const ProfilePoint a{0.3, -0.5}, b{1, -0.4}, c{0.9, 0.6};
+  const auto between = [](const ProfilePoint& p, const ProfilePoint& q, double u) {
+    return straight(p, q)(u);
+  };
+  const ProfilePoint peak{1.5, 0.2};
+  const std::vector<ProfilePoint> ring{a,
+                                       between(a, b, 1.0 / 3),
+                                       between(a, b, 2.0 / 3),
+                                       b,
+                                       between(b, peak, 2.0 / 3),
+                                       between(c, peak, 2.0 / 3),
+                                       c,
+                                       {0.2, 1.2},
+                                       {0.7, -0.2},
+                                       a};
+  all.push_back(
+      turned("lathe of a ring", lathe(ring, false), {bezier(ring, 0), bezier(ring, 3), bezier(ring, 6)}));
+}
+
 std::vector<Sampled> surfaces() {
   std::vector<Sampled> all;
   all.push_back({"sphere",
@@ -194,6 +313,7 @@ std::vector<Sampled> surfaces() {
   all.push_back(ovus("ovus", 1, 0.6));
   all.push_back(ovus("ovus on its tip", 0.8, 1.3));
   all.push_back(ovus("pointed ovus", 1, 0.05));
+  add_turned(all);
   return all;
 }
 
@@ -320,8 +440,10 @@ TEST(ClosestShapes, NormalsPointOutwards) {
       const auto accel = placed(s.geometry, m, 0);
       const double size = std::cbrt(std::abs(m.determinant()));
       int checked = 0;
-      for (int i = 0; i < 300; ++i) {
-        const Vec3f p(m.point(r.vector() * 2.0));
+      std::vector<Vec3d> points = s.special;
+      for (int i = 0; i < 300; ++i) points.push_back(r.vector() * 2.0);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3f p(m.point(points[i]));
         const ClosestPoint c = closest_point(*accel, p);
         if (c.distance < 1e-4 * size) continue;
         ++checked;
@@ -333,6 +455,29 @@ TEST(ClosestShapes, NormalsPointOutwards) {
     ++solids;
   }
   EXPECT_GE(solids, 5);
+}
+
+// Those of an open surface are those that it has closed, also if its profile runs the other way.
+TEST(ClosestShapes, OpenSurfacesKeepTheirNormals) {
+  const std::vector<ProfilePoint> up{{0.3, -1}, {0.9, -0.8}, {0.8, 0.1}, {0.6, 1}};
+  const auto lathe = [](const std::vector<ProfilePoint>& points, bool open) {
+    return build_accel({geometry(ExactShape{LatheShape{points, open}})});
+  };
+  const auto closed = lathe(up, false), open = lathe(up, true), down = lathe({up.rbegin(), up.rend()}, true);
+  CaseRandom r(8);
+  int checked = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3f p(r.vector() * 1.5);
+    const ClosestPoint c = closest_point(*closed, p);
+    if (std::abs(std::abs(c.point.y) - 1) < 1e-6) continue;
+    ++checked;
+    for (const auto& accel : {open, down}) {
+      const ClosestPoint o = closest_point(*accel, p);
+      EXPECT_NEAR(o.distance, c.distance, 1e-6);
+      EXPECT_GT(dot(o.normal, c.normal), 0.999) << i;
+    }
+  }
+  EXPECT_GT(checked, 100);
 }
 
 // Of all things in a scene the nearest counts, at equal distance the first.
@@ -390,7 +535,7 @@ TEST(ClosestShapes, WhatDoesNotTellIsAnError) {
   const std::string others =
       " has no nearest points; these have: mesh, sphere, plane, disk, box, polygon, torus, ovus, cylinder, "
       "cone, "
-      "prism. Ask it with rays or with inside()";
+      "revolution, lathe, prism. Ask it with rays or with inside()";
   ImplicitShape implicit;
   implicit.function = compile_function("x^2 + y^2 + z^2 - 0.5");
   const Geometry field{ExactShape{implicit}, {}, kNoId};
