@@ -766,6 +766,18 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
   cases.push_back({"pigment { marble rotate 40*z }", "F(X, Y, Z).gray"});
   cases.push_back({"sum(i, 1, 4, prod(k, 1, i, x + k * y - i)) - prod(i, 2, 1, z)", "F(X, Y, Z)"});
   cases.push_back({"pattern { checker scale 0.3 }", "F(X, Y, Z)"});
+  const std::string tiles = "checker rgb <1, 0.5, 0>, rgb <0.25, 0, 1> scale 0.4";
+  cases.push_back({"pattern { pigment_pattern { " + tiles + " } rotate 20*y frequency 3 }", "F(X, Y, Z)"});
+  for (const char* channel : {"red", "green", "blue"})
+    for (const std::string& nested :
+         {"average pigment_map { [1 " + tiles + "] [3 rgb <0.5, 1, 0.75>] } translate 0.3*x",
+          "planar pigment_map { [0.2 " + tiles + "] [0.4 marble] [0.4 rgb 0.5] [0.7 wood" + map +
+              "] } scale 2",
+          "checker pigment { " + tiles +
+              " } pigment { average pigment_map { [1 onion] [1 rgb x] } } rotate 30*z",
+          std::string("boxed pigment_map { [0 planar pigment_map { [0 rgb x] [1 leopard" + map +
+                      "] }] [1 rgb y] }")})
+      cases.push_back({"pigment { " + nested + " }", std::string("F(X, Y, Z).") + channel});
   std::string text = "#version 3.7;\n";
   const Vec3d places[] = {{0.31, 0.42, 0.73}, {-0.87, 0.13, 0.55}, {0.05, -0.64, -0.21}, {0.9, 0.95, -0.8}};
   const auto filled = [](std::string call, const std::string& x, const std::string& y, const std::string& z) {
@@ -800,8 +812,9 @@ TEST(PovScene, SplinesAndPigmentsInFunctions) {
   EXPECT_NE(warning("agate").find("contains a pattern 'agate', which"), std::string::npos)
       << warning("agate");
   EXPECT_NE(warning("marble turbulence 1").find("a pattern 'marble' with turbulence"), std::string::npos);
-  EXPECT_NE(warning("planar pigment_map { [0 marble] [1 rgb 1] }").find("a pigment of pigments"),
+  EXPECT_NE(warning("planar pigment_map { [0 agate] [1 rgb 1] }").find("a pattern 'agate', which"),
             std::string::npos);
+  EXPECT_NE(warning("average pigment_map { [0 rgb 1] }").find("an average of nothing"), std::string::npos);
 }
 
 TEST(PovScene, HeightsOfPalettesAreNumbers) {

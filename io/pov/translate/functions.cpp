@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
@@ -303,16 +304,26 @@ class Writer {
   std::string pattern(const FunctionNode& node, const std::vector<std::string>& operands) const {
     if (node.block == nullptr || operands.size() < 3) throw Unwritable{"an unknown pattern"};
     if (node.block->keyword != "pattern") return pigment(node, operands);
-    PatternReader reader(context_, [](const Block&) -> Node { return nullptr; });
+    Pigment shown;
+    PatternReader reader(context_, [&](const Block& block) -> Node {
+      read_pigment(context_, block, shown);
+      return nullptr;
+    });
     Arguments arguments(context_, *node.block);
     PovPattern p;
     while (!arguments.at_end())
       if (!reader.take(arguments, p)) throw Unwritable{"a pattern with more than expressions have"};
-    return value_of(p, operands);
+    const Coordinates at = place_in(p, operands);
+    if (p.word == "pigment_pattern") return waved_formula(p, {brightness(shown, at)});
+    return value_of(p, at);
   }
 
-  /// The value of a pattern at the place that three operands are.
-  static std::string value_of(const PovPattern& p, const std::vector<std::string>& operands) {
+  /// The coordinates of a place, as formulas.
+  using Coordinates = std::array<std::string, 3>;
+
+  /// Where a pattern is asked for its value, at the place that three operands are.
+  template <class Operands>
+  static Coordinates place_in(const PovPattern& p, const Operands& operands) {
     const std::string name = fmt::format("a pattern '{}'", p.word);
     Affine all;
     for (const auto& modifier : p.modifiers) {
@@ -322,8 +333,12 @@ class Writer {
     }
     if (!(p.turbulence == Vec3d{0, 0, 0})) throw Unwritable{name + " with turbulence"};
     if (!all.is_invertible()) throw Unwritable{name + " with a transform that has no inverse"};
-    const PatternFormula formula = pattern_formula(p, moved(all.inverse(), operands));
-    if (formula.text.empty()) throw Unwritable{name};
+    return moved(all.inverse(), operands);
+  }
+
+  static std::string value_of(const PovPattern& p, const Coordinates& at) {
+    const PatternFormula formula = pattern_formula(p, at);
+    if (formula.text.empty()) throw Unwritable{fmt::format("a pattern '{}'", p.word)};
     return waved_formula(p, formula);
   }
 
@@ -342,16 +357,27 @@ class Writer {
     return channel(p, node.index, operands);
   }
 
-  static std::string channel(const Pigment& p, std::uint32_t index,
-                             const std::vector<std::string>& operands) {
+  /// As video weights colours, see pattern_figures.cpp in render/.
+  static std::string brightness(const Pigment& p, const Coordinates& at) {
+    return filled("0.297 * $0 + 0.589 * $1 + 0.114 * $2",
+                  {channel(p, 0, at), channel(p, 1, at), channel(p, 2, at)});
+  }
+
+  template <class Operands>
+  static std::string channel(const Pigment& p, std::uint32_t index, const Operands& operands) {
     const auto of = [&](const PigmentEntry& entry) {
-      if (entry.pigment != nullptr) throw Unwritable{"a pigment of pigments"};
       const PovColor& c = entry.color;
       return index < 3 ? c.rgb[static_cast<int>(index)] : index == 3 ? c.filter : c.transmit;
     };
     if (is_solid(p)) return number_of(of({0, p.solid, nullptr}));
-    if (p.is_average) throw Unwritable{"an average of pigments"};
+    const Coordinates at = place_in(p.pattern, operands);
+    const auto text_of = [&](const PigmentEntry& entry) {
+      return entry.pigment != nullptr ? channel(*entry.pigment, index, at) : number_of(of(entry));
+    };
+    if (p.is_average) return mean(p.entries, text_of);
     const std::vector<PigmentEntry> entries = entries_of(p);
+    if (std::ranges::any_of(entries, [](const PigmentEntry& entry) { return entry.pigment != nullptr; }))
+      return blend(p, entries, value_of(p.pattern, at), text_of);
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i + 1 < entries.size(); ++i) {
       const double a = of(entries[i]), b = of(entries[i + 1]);
@@ -361,12 +387,45 @@ class Writer {
       else
         pieces.push_back({entries[i].at, entries[i + 1].at, {a, b - a}});
     }
-    return pieces_text(value_of(p.pattern, operands), of(entries.front()), pieces);
+    return pieces_text(value_of(p.pattern, at), of(entries.front()), pieces);
+  }
+
+  /// The mean of entries whose places are weights.
+  template <class TextOf>
+  static std::string mean(const std::vector<PigmentEntry>& entries, const TextOf& text_of) {
+    double weights = 0;
+    for (const PigmentEntry& entry : entries) weights += entry.at;
+    if (!(weights > 0)) throw Unwritable{"an average of nothing"};
+    std::string sum;
+    for (const PigmentEntry& entry : entries)
+      sum +=
+          fmt::format("{}{} * {}", sum.empty() ? "" : " + ", number_of(entry.at / weights), text_of(entry));
+    return "(" + sum + ")";
+  }
+
+  /// From entry to entry as the value `v` of the pattern says; in a list it is the number of one.
+  template <class TextOf>
+  static std::string blend(const Pigment& p, const std::vector<PigmentEntry>& entries, const std::string& v,
+                           const TextOf& text_of) {
+    std::string before = text_of(entries.front()), sum = before;
+    for (std::size_t i = 0; i + 1 < entries.size(); ++i) {
+      const double middle = static_cast<double>(i) + 0.5;
+      Piece part{entries[i].at, entries[i + 1].at, {0, 1}};
+      if (p.pattern.is_list) part = {middle, middle, {1}};
+      if (!(part.to > part.from)) part.c = {1};
+      const std::string next = text_of(entries[i + 1]);
+      sum += fmt::format(" + ({} - {}) * {}", next, before, pieces_text(v, 0, {part}));
+      before = next;
+      if (sum.size() > kMaxExpressionLength)
+        throw Unwritable{"pigments that are too long when they are written out"};
+    }
+    return "(" + sum + ")";
   }
 
   /// The coordinates of the place to which a map takes the place that three operands are.
-  static std::array<std::string, 3> moved(const Affine& map, const std::vector<std::string>& operands) {
-    std::array<std::string, 3> to;
+  template <class Operands>
+  static Coordinates moved(const Affine& map, const Operands& operands) {
+    Coordinates to;
     const Vec3d origin = map.point({0, 0, 0});
     for (int row = 0; row < 3; ++row) {
       std::string sum;

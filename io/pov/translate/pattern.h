@@ -12,13 +12,13 @@
 
 namespace oktett::pov {
 
-/// A pattern with what displaces places in it and what becomes of its values.
 /// POV-Ray's u and v of a shape: each is `scale` times Oktett's plus `first`, and u begins again at 1.
 struct UvLayout {
   std::array<double, 2> scale{1, 1}, first{0, 0};
   bool operator==(const UvLayout&) const = default;
 };
 
+/// A pattern with what displaces places in it and what becomes of its values.
 struct PovPattern {
   std::string_view word;  ///< that of the language; empty: there is none
   Place where;
