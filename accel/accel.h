@@ -74,10 +74,13 @@ struct Geometry {
 
 /// A node of a Boolean expression: an operand, or a combination of other nodes. Spheres, boxes, planes (the
 /// half-space dot(normal, p) <= offset), closed meshes, exact surfaces that have an inside, and instances and
-/// combinations of these are solids. All other geometries have no inside and are left out.
+/// combinations of these are solids. All other geometries have no inside and are left out, unless the operand
+/// is CsgOp::surfaces: of that, whatever it is, only surfaces count. A ray meets one where the whole holds
+/// nothing without it, but would if the ray were inside of it there: in an intersection as far as it is in
+/// all other operands, of the first operand of a difference what is in no other.
 struct CsgExpression {
   CsgOp op = CsgOp::operand;
-  std::vector<Geometry> solids;         ///< of CsgOp::operand: it is their union
+  std::vector<Geometry> solids;         ///< of operands: it is their union
   std::vector<CsgExpression> children;  ///< of all others: what is combined, in order
   /// Of the root: only rays that run through each of these solids meet the combination, wherever on them it
   /// lies. They do not count for inside() and nearest points, nor where an expression is part of another.

@@ -59,6 +59,7 @@ struct CsgItem {
   /// Number of each geometry's first solid, and the number of solids at the end.
   std::vector<std::uint32_t> first_solid;
   bool has_meshes = false;     ///< among the solids and in instances of them
+  bool has_surfaces = false;   ///< some nodes are CsgOp::surfaces
   std::vector<CsgNode> nodes;  ///< the root first
   std::vector<std::uint32_t>
       unbounded;                     ///< geometries of `solids` that a ray may be inside without a crossing

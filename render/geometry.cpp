@@ -1,6 +1,7 @@
 #include "render/geometry.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <span>
 #include <utility>
@@ -438,8 +439,11 @@ class WorldBuilder {
       CsgExpression& child = expression.children.emplace_back();
       const std::string& own_name = object.name.empty() ? name : object.name;
       if (const auto* csg = std::get_if<CsgShape>(&object.shape)) {
+        const bool were_surfaces = std::exchange(surfaces_, csg->op == CsgOp::surfaces);
         child = csg_expression(*csg, own_name);
+        surfaces_ = were_surfaces;
         move(child, object.transform);
+        if (child.op == CsgOp::surfaces) gather_solids(child);
         continue;
       }
       Geometry solid;
@@ -475,6 +479,13 @@ class WorldBuilder {
            m.transparency == 0;
   }
 
+  /// Those of the children become those of the expression.
+  static void gather_solids(CsgExpression& expression) {
+    for (CsgExpression& child : expression.children)
+      std::ranges::move(child.solids, std::back_inserter(expression.solids));
+    expression.children.clear();
+  }
+
   static void move(CsgExpression& expression, const Affine& transform) {
     for (Geometry& solid : expression.solids) solid.transform = transform * solid.transform;
     for (CsgExpression& child : expression.children) move(child, transform);
@@ -494,7 +505,7 @@ class WorldBuilder {
 
   /// What ObjectMaterials::solid is for object number `id`.
   std::uint32_t solid(const Object& object, std::uint32_t id) {
-    if (!world_.tracks_dielectrics || !is_entered(object, scene_)) return kNoId;
+    if (!world_.tracks_dielectrics || surfaces_ || !is_entered(object, scene_)) return kNoId;
     world_.has_enclosing_solids = true;
     return combination_ != kNoId ? combination_ : id;
   }
@@ -506,6 +517,7 @@ class WorldBuilder {
   StructureObjects structure_objects_;
   std::set<const TriangleMesh*> seen_;
   std::uint32_t combination_ = kNoId;                 ///< the object whose operands are being made
+  bool surfaces_ = false;                             ///< the operands are those of CsgOp::surfaces
   const bool catches_;                                ///< there are shadow catchers
   const bool hides_objects_;                          ///< some object is not in all trees of a SeenBy
   std::unordered_map<const Accel*, SeenBy> seen_by_;  ///< of the structures of lists

@@ -486,7 +486,8 @@ struct Object;
 /// A Boolean combination of objects. An operand's transform maps to the space of the object that has this
 /// shape. Each operand keeps its own material.
 struct CsgShape {
-  CsgOp op = CsgOp::unite;  ///< not CsgOp::operand
+  CsgOp op =
+      CsgOp::unite;  ///< not CsgOp::operand; CsgOp::surfaces of no combinations, and within another one
   std::shared_ptr<const std::vector<Object>> operands;
   /// Shapes in the same space: only rays that run through each of them see the combination. Null: none. Of
   /// combinations inside others they do not count.

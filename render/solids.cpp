@@ -18,6 +18,16 @@ struct IsSolid {
            (shape.by_winding || find_open_edges(*shape.mesh).count == 0);
   }
   bool operator()(const ExactShape& shape) const { return !is_open(shape); }
+  bool operator()(const CsgShape& shape) const {
+    // Where surfaces are among the operands, they may be all that is left.
+    const auto is_whole = [](const auto& self, const CsgShape& csg) -> bool {
+      return csg.op != CsgOp::surfaces && std::ranges::all_of(*csg.operands, [&](const Object& o) {
+               const auto* const inner = std::get_if<CsgShape>(&o.shape);
+               return inner == nullptr || self(self, *inner);
+             });
+    };
+    return is_whole(is_whole, shape);
+  }
   bool operator()(const InstanceShape& shape) const {
     if (shape.prototype >= prototypes.size()) return false;
     const std::vector<Object>& objects = prototypes[shape.prototype].objects;

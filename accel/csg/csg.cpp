@@ -95,7 +95,7 @@ void find_needed(CsgItem& csg) {
   std::set<std::uint8_t> kinds;
   for (std::size_t g = 0; g < csg.operand_of.size(); ++g) {
     const std::uint32_t node = csg.operand_of[g];
-    csg.needed.push_back(nodes[node] && count[node] == 1);
+    csg.needed.push_back(nodes[node] && count[node] == 1 && csg.nodes[node].op != CsgOp::surfaces);
     if (csg.needed.back() != 0) kinds.insert(solids.kinds[g]);
   }
   csg.leaf_order.resize(solids.leaves.size());
@@ -152,7 +152,7 @@ static CsgExpression expanded(const CsgExpression& operand) {
   for (const Geometry& g : operand.solids) {
     const auto* csg = std::get_if<CsgGeometry>(&g.shape);
     if (csg == nullptr)
-      all.children.push_back({CsgOp::operand, {g}, {}});
+      all.children.push_back({operand.op, {g}, {}});
     else if (csg->expression)
       all.children.push_back(moved(*csg->expression, g.transform));
   }
@@ -169,8 +169,10 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
       if (std::holds_alternative<CsgGeometry>(g.shape)) return self(self, expanded(e), parent, is_first);
     const auto node = static_cast<std::uint32_t>(csg.nodes.size());
     csg.nodes.push_back({e.op, is_first, parent, static_cast<std::uint32_t>(e.children.size())});
+    csg.has_surfaces |= e.op == CsgOp::surfaces;
     for (const Geometry& g : e.solids) {
-      if (is_unbounded(g)) csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
+      if (is_unbounded(g) && e.op != CsgOp::surfaces)
+        csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
       solids.push_back(g);
       csg.operand_of.push_back(node);
     }
@@ -182,10 +184,11 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   csg.solids = build_accel(std::move(solids), options);
   csg.has_meshes = prepare_senses(*csg.solids, seen);
   number_solids(csg);
-  csg.in_lanes = fits_lanes(csg);
+  csg.in_lanes = !csg.has_surfaces && fits_lanes(csg);
   find_needed(csg);
-  csg.listed = std::ranges::all_of(csg.solids->kinds,
-                                   [](std::uint8_t kind) { return is_shape(static_cast<Kind>(kind)); });
+  csg.listed = !csg.has_surfaces && std::ranges::all_of(csg.solids->kinds, [](std::uint8_t kind) {
+    return is_shape(static_cast<Kind>(kind));
+  });
   if (!csg.in_lanes) find_probes(csg);
   if (csg.nodes.size() <= kMaxCsgSteps)
     for (std::uint32_t node = 0; node < csg.nodes.size(); ++node) csg.steps.push_back(step_of(csg, node));
@@ -289,7 +292,7 @@ bool is_inside(const CsgItem& csg, const HalfLine& line) {
   // Children stand behind their parents, the first of them in front of the others.
   const auto evaluate = [&](const auto& self, std::uint32_t node) -> bool {
     const CsgOp op = csg.nodes[node].op;
-    if (op == CsgOp::operand) return inside[node] != 0;
+    if (op == CsgOp::operand || op == CsgOp::surfaces) return inside[node] != 0;
     std::uint32_t met = 0, first = 0;
     for (std::uint32_t k = node + 1; k < csg.nodes.size(); ++k) {
       if (csg.nodes[k].parent != node || !self(self, k)) continue;

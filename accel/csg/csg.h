@@ -49,7 +49,8 @@ std::vector<CsgStep>& csg_steps(const CsgItem& csg, std::uint32_t* operands, int
 /// One ray through a combination. Crossings that coincide are applied together, so that spans without length
 /// vanish. If they change whether the ray is inside the combination, the hit is one of them: the nearest that
 /// enters or leaves its solid as the ray does the combination, at equal distance the one with the lowest
-/// (instance, item).
+/// (instance, item). Surfaces of CsgOp::surfaces change nothing; they are seen as they would be just before
+/// or just behind what coincides with them.
 class CsgSweep {
  public:
   CsgSweep();

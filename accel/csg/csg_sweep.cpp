@@ -12,7 +12,7 @@ namespace {
 /// A crossing of the ray with one solid.
 struct Event {
   float t;
-  float turn;
+  float turn;  ///< 0: it is with CsgOp::surfaces
   std::uint32_t solid, geometry;
   std::uint32_t crossing;
 };
@@ -46,6 +46,16 @@ class States {
     if (was != (inside_[operand] > 0)) turn(operand, after);
   }
   bool whole() const { return is_inside(0); }
+  /// Whether a surface of this geometry, of CsgOp::surfaces, is seen here: the ray would be inside of the
+  /// whole if it were inside of that.
+  bool shows(std::uint32_t geometry) {
+    if (whole()) return false;
+    const std::uint32_t operand = csg_->operand_of[geometry];
+    count(operand, 1), turn(operand, true);
+    const bool shown = whole();
+    count(operand, -1), turn(operand, false);
+    return shown;
+  }
 
  private:
   void count(std::uint32_t node, int change) {
@@ -56,6 +66,7 @@ class States {
     const CsgNode& n = nodes_[node];
     switch (n.op) {
       case CsgOp::operand:
+      case CsgOp::surfaces:
       case CsgOp::unite:
         return inside_[node] > 0;
       case CsgOp::intersect:
@@ -94,7 +105,8 @@ struct Begin {
 /// Memory for one ray's sweep, kept between rays.
 struct Scratch {
   std::vector<Event> events;
-  std::vector<Begin> begin;  ///< per solid; reset between rays
+  std::vector<Begin> begin;        ///< per solid; reset between rays
+  std::vector<std::size_t> shown;  ///< events with surfaces that are seen before those that coincide count
   States states;
 };
 
@@ -120,6 +132,7 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
     const std::size_t first = i, end = group_end(s.events, first, slack);
     for (; i < end; ++i) {
       const Event& e = s.events[i];
+      if (e.turn == 0) continue;
       Begin& b = s.begin[e.solid];
       if (is_primitive(e) && !b.met) b.least = e.turn < 0 ? 0 : -1;
       b.met = true;
@@ -140,23 +153,25 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   }
 }
 
+/// Whether a geometry has a surface.
+bool is_seen(const CsgItem& csg, std::uint32_t geometry, bool with_unseen) {
+  return with_unseen || csg.unseen.empty() || csg.unseen[geometry] == 0;
+}
+
 /// Which of the events from `first` to `end` is the hit where the ray enters (-1) or leaves (1) the
 /// combination: one with a solid that is entered or left likewise, if there is one, as its normal is right;
 /// `end` if only what has no surface is.
 std::size_t seen_event(const CsgItem& csg, const std::vector<Event>& events, std::size_t first,
                        std::size_t end, float turn, bool with_unseen) {
-  const auto is_seen = [&](const Event& e) {
-    return with_unseen || csg.unseen.empty() || csg.unseen[e.geometry] == 0;
-  };
   bool likewise = false;
   for (std::size_t k = first; k < end; ++k) {
     if (events[k].turn != turn) continue;
     likewise = true;
-    if (is_seen(events[k])) return k;
+    if (is_seen(csg, events[k].geometry, with_unseen)) return k;
   }
   if (likewise) return end;
   for (std::size_t k = first; k < end && events[k].t == events[first].t; ++k)
-    if (is_seen(events[k])) return k;
+    if (events[k].turn != 0 && is_seen(csg, events[k].geometry, with_unseen)) return k;
   return end;
 }
 
@@ -171,11 +186,16 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   std::span<const float> turns;
   if (csg.has_meshes) turns = solid_turns(solids, crossings);
   for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-    const float turn = turns.empty() ? crossings[i].turn : turns[i];
-    if (turn == 0) continue;
+    float turn = turns.empty() ? crossings[i].turn : turns[i];
+    if (turn == 0 && !csg.has_surfaces) continue;
     const Hit& hit = crossings[i].hit;
     const std::uint32_t item = hit.instance == kNoId ? hit.item : top_item(solids, hit.instance);
     const std::uint32_t geometry = solids.geometry_of(item);
+    if (csg.has_surfaces) {
+      const bool is_surface = csg.nodes[csg.operand_of[geometry]].op == CsgOp::surfaces;
+      if (is_surface ? !is_seen(csg, geometry, with_unseen) : turn == 0) continue;
+      if (is_surface) turn = 0;
+    }
     std::uint32_t solid = csg.first_solid[geometry];
     if (csg.first_solid[geometry + 1] > solid + 1) solid += item - solids.first_item[geometry];
     s.events.push_back({hit.t, turn, solid, geometry, i});
@@ -191,21 +211,38 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   s.states.begin(csg);
   const float slack = coincidence_slack(solids, ray);
   start_states(csg, ray, slack, s);
-  bool inside = s.states.whole();
-  for (std::size_t i = 0; i < s.events.size();) {
-    const std::size_t first = i, end = group_end(s.events, first, slack);
-    for (; i < end; ++i) s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
-    const bool now = s.states.whole();
-    if (now == inside) continue;
-    inside = now;
-    const float turn = now ? -1.0f : 1.0f;
-    const std::size_t seen = seen_event(csg, s.events, first, end, turn, with_unseen);
-    if (seen == end) continue;
+  // Event k is a hit at which the ray turns as told, or meets one of the surfaces.
+  const auto report = [&](std::size_t k, float turn) {
     // found.turn follows the winding, as the normal does, also for meshes wound inside out.
-    Crossing found = crossings[s.events[seen].crossing];
-    found.hit.instance = csg_path(csg, found.hit.instance, found.turn != turn);
+    Crossing found = crossings[s.events[k].crossing];
+    found.hit.instance = csg_path(csg, found.hit.instance, turn != 0 && found.turn != turn);
     found.turn = turn;
-    if (!f(found)) break;
+    return f(found);
+  };
+  bool inside = s.states.whole(), goes_on = true;
+  for (std::size_t i = 0; goes_on && i < s.events.size();) {
+    const std::size_t first = i, end = group_end(s.events, first, slack);
+    s.shown.clear();
+    for (std::size_t k = first; csg.has_surfaces && k < end; ++k)
+      if (s.events[k].turn == 0 && s.states.shows(s.events[k].geometry)) s.shown.push_back(k);
+    for (; i < end; ++i)
+      if (s.events[i].turn != 0)
+        s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
+    const bool now = s.states.whole();
+    const float turn = now ? -1.0f : 1.0f;
+    const std::size_t seen = now == inside ? end : seen_event(csg, s.events, first, end, turn, with_unseen);
+    inside = now;
+    if (!csg.has_surfaces) {
+      goes_on = seen == end || report(seen, turn);
+      continue;
+    }
+    for (std::size_t k = first; goes_on && k < end; ++k) {
+      if (k == seen)
+        goes_on = report(k, turn);
+      else if (s.events[k].turn == 0 &&
+               (s.states.shows(s.events[k].geometry) || std::ranges::find(s.shown, k) != s.shown.end()))
+        goes_on = report(k, 0);
+    }
   }
   s.states.end();
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "io/scene/schema.h"
 #include "io/yaml/utf8.h"
 #include "render/recentre.h"
+#include "render/solids.h"
 
 namespace oktett {
 
@@ -61,6 +63,7 @@ constexpr SchemaRow kOtherShapes[] = {
     {kCsgKeys[0].name, "what is in any of the solids", operands_schema},
     {kCsgKeys[1].name, "what is in all of the solids", operands_schema},
     {kCsgKeys[2].name, "what is in the first solid and in no other", operands_schema},
+    {kCsgKeys[3].name, "as an operand of these: shapes of which only the surfaces count", operands_schema},
     {"group", "objects, with one transform, and one material and name for those without their own",
      objects_schema},
     {"instance", "the prototype of this name", [](Schema&) { return Schema::text(); }}};
@@ -325,6 +328,11 @@ class ObjectReader {
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
+    const bool are_surfaces = op == CsgOp::surfaces;
+    if (are_surfaces && !is_operand_)
+      throw Error(key.where(),
+                  "'surfaces' are seen as the solids around them let them; expected the key among the "
+                  "operands of 'union', 'intersection' or 'difference'");
     // Operands stand in the space of the combination, whose transform applies to all.
     const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}, kAllRays, outer.light_list};
     std::vector<Object> solids;
@@ -333,13 +341,18 @@ class ObjectReader {
       std::vector<Object> members = read_operand(*node, inner);
       for (const Object& member : members)
         attempt(*node, [&] {
-          require_solid(load_, member, "only solids can be combined");
+          if (are_surfaces)
+            require_surface(member);
+          else
+            require_solid(load_, member, "only solids can be combined, others as 'surfaces'");
           require_visible(member);
         });
       // What was skipped is nothing, and so is what it is intersected with or taken from.
       const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
       if (members.empty())
         is_nothing |= is_needed;
+      else if (are_surfaces)
+        std::ranges::move(members, std::back_inserter(solids));
       else
         solids.push_back(unite(std::move(members), node->where()));
     }
@@ -366,6 +379,8 @@ class ObjectReader {
       for (Object& window : read_operand(*node, {}))
         attempt(*node, [&] {
           require_solid(load_, window, "only solids can be seen through");
+          if (!is_solid(window.shape, load_.scene.prototypes))
+            throw Error(node->where(), "surfaces have no inside; only solids can be seen through");
           if (holds_triangles(window))
             throw Error(node->where(),
                         "meshes and instances cannot be seen through; expected a shape such as a sphere or a "
@@ -381,6 +396,16 @@ class ObjectReader {
       return std::ranges::any_of(*csg->operands, holds_triangles);
     return std::holds_alternative<MeshShape>(object.shape) ||
            std::holds_alternative<InstanceShape>(object.shape);
+  }
+
+  /// Throws Error if the object's surface has something inside.
+  void require_surface(const Object& object) const {
+    if (std::holds_alternative<CsgShape>(object.shape))
+      throw Error(object.where, "a combination is an operand itself; expected other shapes in 'surfaces'");
+    if (object.material == kNoId) return;
+    const Material& m = load_.scene.materials[object.material];
+    if (m.interior != kNoId || m.priority != kNoPriority)
+      throw Error(object.where, "surfaces alone have no inside, but the material has an interior");
   }
 
   /// Throws Error if the operand is an instance of what is not visible to all rays.

@@ -170,9 +170,11 @@ void visit_patterns(const What& what) {
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node);
 std::string material_schema(Schema& schema);
 
-/// The boolean combinations by their keys.
-inline constexpr Choice<CsgOp> kCsgKeys[] = {
-    {"union", CsgOp::unite}, {"intersection", CsgOp::intersect}, {"difference", CsgOp::subtract}};
+/// The boolean combinations by their keys, and what may be their operand besides.
+inline constexpr Choice<CsgOp> kCsgKeys[] = {{"union", CsgOp::unite},
+                                             {"intersection", CsgOp::intersect},
+                                             {"difference", CsgOp::subtract},
+                                             {"surfaces", CsgOp::surfaces}};
 /// Every shape that describes its parameters, by its key.
 const std::vector<std::string>& shape_keys();
 

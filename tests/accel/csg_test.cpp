@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "accel/accel_data.h"
 #include "accel/hit_place.h"
 #include "accel/point_query.h"
+#include "verify/cases/kernel_cases.h"
 #include "verify/checks/csg.h"
 #include "verify/oracles/mesh.h"
 
@@ -485,6 +487,131 @@ TEST(Csg, ErrorsOfPositionsHoldTheReach) {
 
 /// A ray meets all of a combination or nothing, by whether it runs through the windows, wherever they are on
 /// it.
+CsgExpression surfaces(std::vector<Geometry> of) { return {CsgOp::surfaces, std::move(of), {}}; }
+CsgExpression combine(CsgOp op, std::vector<CsgExpression> children) { return {op, {}, std::move(children)}; }
+CsgExpression operand(Geometry g) { return {CsgOp::operand, {std::move(g)}, {}}; }
+
+Geometry disk(const Vec3d& center, double radius, std::uint32_t user) {
+  return solid(DiskShape{center, {1, 0, 0}, radius}, user);
+}
+
+/// What has no inside shows where it is in the other operands of an intersection, or outside of what is
+/// subtracted, and changes nothing else.
+TEST(Csg, SurfacesAreCutByTheOtherOperands) {
+  const Geometry box = cube({-1, -1, -1}, {1, 1, 1}, 0);
+  const auto seen = [](CsgOp op, std::vector<CsgExpression> children, float y = 0.25f) {
+    return crossings(*built(whole(combine(op, std::move(children)))), ray_along_x(y, 0.125f));
+  };
+  const CsgExpression plate = surfaces({disk({0, 0, 0}, 5, 1)});
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(box), plate}), Distances{8});
+  EXPECT_EQ(seen(CsgOp::intersect, {plate, operand(box)}, 1.5f), Distances{});
+  EXPECT_EQ(seen(CsgOp::subtract, {plate, operand(box)}), Distances{});
+  EXPECT_EQ(seen(CsgOp::subtract, {plate, operand(box)}, 1.5f), Distances{8});
+  EXPECT_EQ(seen(CsgOp::subtract, {operand(box), plate}), (Distances{7, 9}));
+  EXPECT_EQ(seen(CsgOp::unite, {operand(box), plate}), (Distances{7, 9}));
+  EXPECT_EQ(seen(CsgOp::unite, {operand(box), surfaces({disk({3, 0, 0}, 1, 1)})}), (Distances{7, 9, 11}));
+  // Two surfaces have nothing in common; several are one operand.
+  EXPECT_EQ(seen(CsgOp::intersect, {plate, surfaces({disk({0.5, 0, 0}, 5, 2)})}), Distances{});
+  EXPECT_EQ(
+      seen(CsgOp::intersect, {surfaces({disk({0.5, 0, 0}, 5, 2), disk({0.25, 0, 0}, 5, 3)}), operand(box)}),
+      (Distances{8.25f, 8.5f}));
+  // On the faces of a solid it shows; what is left of a closed surface is open.
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(box), surfaces({disk({-1, 0, 0}, 5, 1)})}), Distances{7});
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(box), surfaces({disk({1, 0, 0}, 5, 1)})}), Distances{9});
+  const Geometry half = solid(PlaneShape{{1, 0, 0}, 0}, 4);
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(half), surfaces({box})}), Distances{7});
+  EXPECT_EQ(seen(CsgOp::subtract, {surfaces({box}), operand(half)}), Distances{9});
+  const Geometry pipe = solid(ExactShape{CylinderShape{{0, -9, 0}, {0, 9, 0}, 0.5, true}}, 5);
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(box), surfaces({pipe})}).size(), 2u);
+  EXPECT_EQ(seen(CsgOp::intersect, {operand(box), surfaces({pipe})}, 1.5f), Distances{});
+  // Neither inside() nor a combination around one in an instance takes surfaces for solids.
+  const auto both = built(whole(combine(CsgOp::unite, {operand(box), surfaces({disk({3, 0, 0}, 9, 1)})})));
+  EXPECT_TRUE(inside(*both, {0, 0, 0}));
+  for (const float x : {-2.0f, 2.0f, 4.0f}) EXPECT_FALSE(inside(*both, {x, 0, 0})) << x;
+  EXPECT_EQ(seen(CsgOp::subtract,
+                 {operand(cube({-4, -2, -2}, {4, 2, 2}, 6)), operand({InstanceGeometry{both}, {}, 7})}),
+            (Distances{4, 7, 9, 12}));
+  // A ray may begin anywhere.
+  const auto cut = built(whole(combine(CsgOp::intersect, {operand(box), plate})));
+  EXPECT_EQ(crossings(*cut, ray_along_x(0.25f, 0, -0.5f)), Distances{0.5f});
+  EXPECT_EQ(crossings(*cut, ray_along_x(0.25f, 0, 0.5f)), Distances{});
+}
+
+/// Random expressions of balls, boxes and surfaces: which of their surfaces' crossings are seen is asked of
+/// the expression at the place itself.
+TEST(Csg, SurfacesShowWhereTheRestOfTheExpressionLetsThem) {
+  CaseRandom r(31);
+  int shown = 0, hidden = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    struct Leaf {
+      bool is_surface;
+      Vec3d center;
+      double radius;
+      bool contains(const Vec3d& p) const { return length(p - center) < radius; }
+    };
+    std::vector<Leaf> leaves;
+    using Inside = std::function<bool(const Vec3d&, std::size_t)>;
+    // A random tree, and whether a point is inside of it if it is taken to be inside of surface number `on`.
+    const auto make = [&](const auto& self, int depth, CsgExpression& e) -> Inside {
+      if (depth == 0 || r.unit() < 0.2) {
+        const Leaf leaf{r.unit() < 0.4, r.vector(), 0.3 + r.unit()};
+        const std::size_t number = leaves.size();
+        leaves.push_back(leaf);
+        const auto user = static_cast<std::uint32_t>(number);
+        e = leaf.is_surface ? surfaces({ball(leaf.center, leaf.radius, user)})
+                            : operand(ball(leaf.center, leaf.radius, user));
+        return
+            [=](const Vec3d& p, std::size_t on) { return leaf.is_surface ? on == number : leaf.contains(p); };
+      }
+      constexpr CsgOp kOps[] = {CsgOp::unite, CsgOp::intersect, CsgOp::subtract};
+      e.op = kOps[static_cast<int>(r.unit() * 3)];
+      std::vector<Inside> parts;
+      e.children.resize(2 + static_cast<std::size_t>(r.unit() * 2));
+      for (CsgExpression& child : e.children) parts.push_back(self(self, depth - 1, child));
+      return [op = e.op, parts](const Vec3d& p, std::size_t on) {
+        std::size_t inside = 0;
+        for (const Inside& part : parts) inside += part(p, on);
+        if (op == CsgOp::unite) return inside > 0;
+        if (op == CsgOp::intersect) return inside == parts.size();
+        return inside == 1 && parts[0](p, on);
+      };
+    };
+    CsgExpression e;
+    const Inside inside_of = make(make, 3, e);
+    const auto accel = built(whole(e));
+    for (int k = 0; k < 20; ++k) {
+      const Vec3d from = r.vector() * 4.0, way = r.vector() * 1.5 - from;
+      const Ray ray{Vec3f(from), 0, Vec3f(way), kInfinity};
+      std::vector<Hit> hits;
+      all_hits(*accel, ray, hits, available_isas().front());
+      for (std::size_t number = 0; number < leaves.size(); ++number) {
+        const Leaf& leaf = leaves[number];
+        if (!leaf.is_surface) continue;
+        const Vec3d o(ray.origin), d(ray.direction), c = o - leaf.center;
+        const double b = dot(c, d), dd = dot(d, d),
+                     root = b * b - dd * (dot(c, c) - leaf.radius * leaf.radius);
+        if (root < 1e-3) continue;
+        for (const double side : {-1.0, 1.0}) {
+          const double t = (-b + side * std::sqrt(root)) / dd;
+          const Vec3d p = o + d * t;
+          const bool unclear = std::ranges::any_of(leaves, [&](const Leaf& l) {
+            return std::abs(length(p - l.center) - l.radius) < 1e-4 && &l != &leaf;
+          });
+          if (t < 1e-4 || unclear) continue;
+          const bool expected = !inside_of(p, leaves.size()) && inside_of(p, number);
+          const bool found = std::ranges::any_of(hits, [&](const Hit& hit) {
+            return std::abs(hit.t - t) < 1e-5 && surface_interaction(*accel, ray, hit).user == number;
+          });
+          ASSERT_EQ(found, expected) << "trial " << trial << ", surface " << number << " at " << t;
+          ++(expected ? shown : hidden);
+        }
+      }
+    }
+  }
+  EXPECT_GT(shown, 1000);
+  EXPECT_GT(hidden, 1000);
+}
+
 TEST(Csg, WindowsHideWhatTheyDoNotCut) {
   CsgExpression e = combine(CsgOp::unite, {cube({0, -4, -4}, {1, 4, 4}, 0), ball({3, 0, 0}, 1, 1)});
   e.windows = {ball({-2, 0, 0}, 1, 0)};

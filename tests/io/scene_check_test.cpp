@@ -90,9 +90,10 @@ TEST(SceneCheck, LeavesOutWhatFollowsFromAnError) {
   EXPECT_EQ(check_v1("materials: [gold]\nobjects: [{sphere: {}, material: gold}]"),
             (Lines{"scene.yaml:2:12: expected a map for materials, found a list"}));
   // Nothing would be left of the difference, and the edges would not be perpendicular.
-  EXPECT_EQ(check_v1("objects: [{difference: [{sphere: {radius: x}}, {disk: {}}]}]\n"),
-            (Lines{"scene.yaml:2:43: expected a number, found 'x'",
-                   "scene.yaml:2:48: a disk has no inside; only solids can be combined"}));
+  EXPECT_EQ(
+      check_v1("objects: [{difference: [{sphere: {radius: x}}, {disk: {}}]}]\n"),
+      (Lines{"scene.yaml:2:43: expected a number, found 'x'",
+             "scene.yaml:2:48: a disk has no inside; only solids can be combined, others as 'surfaces'"}));
   EXPECT_EQ(check_v1("lights: [{rectangle: {corner: [0, 0, 0], u: [1, 0, x], v: [0, 1, 0]}}]"),
             (Lines{"scene.yaml:2:52: expected a number, found 'x'"}));
 }

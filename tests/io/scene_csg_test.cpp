@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "render/solids.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett::scene_csg_test {
@@ -83,6 +84,31 @@ TEST(SceneCsg, WhatHasNoInsideIsRefused) {
   expect_starts(error("instance: flat"), "scene.yaml:6:9: in prototype 'flat': a disk has no inside");
   expect_starts(error("group: [{sphere: }, {disk: }]"), "scene.yaml:6:29: a disk has no inside");
   EXPECT_EQ(error("paraboloid: {open: true}"), "no error");
+}
+
+TEST(SceneCsg, SurfacesAreOperands) {
+  const SceneFiles files;
+  const Scene scene = files.load_v1(
+      "define: {flat: {disk: }}\nobjects:\n  - intersection:\n      - sphere:\n"
+      "      - surfaces: [{disk: }, {group: [{instance: flat}, {cylinder: {open: true}}]}]\n"
+      "        transform: {translate: [1, 0, 0]}\n");
+  const CsgShape& cut = std::get<CsgShape>(operand(csg(scene), 1).shape);
+  EXPECT_EQ(cut.op, CsgOp::surfaces);
+  EXPECT_EQ(cut.operands->size(), 3u);
+  EXPECT_EQ(operand(csg(scene), 1).transform.point({0, 0, 0}), (Vec3d{1, 0, 0}));
+  EXPECT_FALSE(is_solid(scene.objects[0].shape, scene.prototypes));
+  const auto error = [&](const std::string& object) {
+    return files.error_v1("materials: {glass: {transparency: 1, priority: 1}}\nobjects:\n  - " + object +
+                          "\n");
+  };
+  expect_starts(error("surfaces: [{disk: }]"),
+                "scene.yaml:4:5: 'surfaces' are seen as the solids around them let");
+  expect_starts(error("union: [{surfaces: [{union: [{box: }]}]}]"),
+                "scene.yaml:4:25: a combination is an operand itself");
+  expect_starts(error("union: [{surfaces: [{box: , material: glass}]}]"),
+                "scene.yaml:4:25: surfaces alone have no inside");
+  expect_starts(error("{union: [{box: }], seen_through: [{surfaces: [{box: }]}]}"),
+                "scene.yaml:4:39: surfaces have no inside; only solids can be seen through");
 }
 
 TEST(SceneCsg, MeshesAreClosedOrTakenByWinding) {
