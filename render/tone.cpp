@@ -41,6 +41,12 @@ Vec3d neutral(Vec3d c) {
   return c * (shown / peak) * (1 - white) + Vec3d{shown, shown, shown} * white;
 }
 
+/// What sRGB's curve encodes as v.
+double decoded(double v) {
+  if (v <= 0.04045) return v / 12.92;
+  return portable::exp2(2.4 * portable::log2((v + 0.055) / 1.055));
+}
+
 }  // namespace
 
 Color toned(const Tone& tone, const Color& c) {
@@ -53,7 +59,9 @@ Color toned(const Tone& tone, const Color& c) {
   if (tone.kind == ToneKind::srgb) return Color(light);
   const Vec3d seen{std::max(light.x, 0.0), std::max(light.y, 0.0), std::max(light.z, 0.0)};
   Vec3d shown;
-  if (tone.kind == ToneKind::filmic)
+  if (tone.kind == ToneKind::raw)
+    shown = {decoded(std::min(seen.x, 1.0)), decoded(std::min(seen.y, 1.0)), decoded(std::min(seen.z, 1.0))};
+  else if (tone.kind == ToneKind::filmic)
     shown = {hable(seen.x), hable(seen.y), hable(seen.z)};
   else
     shown = tone.kind == ToneKind::aces ? aces(seen) : neutral(seen);

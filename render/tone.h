@@ -12,12 +12,14 @@ enum class ToneKind {
   filmic,   ///< the curve of a film with a long shoulder (Hable 2010)
   aces,     ///< the reference rendering and sRGB output of the Academy, as fitted by Hill (2016)
   neutral,  ///< colours as they are up to 0.76, highlights compressed (Khronos 2024)
+  raw,      ///< the numbers are those that the file holds: sRGB's curve is undone beforehand
 };
 /// Their names.
 inline constexpr Choice<ToneKind> kToneKinds[] = {{"srgb", ToneKind::srgb},
                                                   {"filmic", ToneKind::filmic},
                                                   {"aces", ToneKind::aces},
-                                                  {"neutral", ToneKind::neutral}};
+                                                  {"neutral", ToneKind::neutral},
+                                                  {"raw", ToneKind::raw}};
 
 /// Exposures that make sense, in stops.
 inline constexpr Range kExposures{-64, 64};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/math.h"
 #include "core/parallel.h"
 #include "io/image/byte_table.h"
 #include "io/image/color.h"
@@ -71,6 +72,18 @@ bool is_power(const Tone& tone) {
 }
 
 FlatImage flatten_to_bytes(const Picture& picture, bool with_alpha) {
+  if (picture.tone.kind == ToneKind::raw && picture.tone.gamma == 1) {
+    const float factor = static_cast<float>(portable::exp2(picture.tone.exposure));
+    const auto byte = [&](float x) {
+      return static_cast<std::uint8_t>(std::clamp(x * factor, 0.0f, 1.0f) * 255 + 0.5f);
+    };
+    const auto shown = [&](const Color& light) -> std::array<std::uint8_t, 3> {
+      if (!is_finite(light))
+        return {linear_to_srgb8(light.x), linear_to_srgb8(light.y), linear_to_srgb8(light.z)};
+      return {byte(light.x), byte(light.y), byte(light.z)};
+    };
+    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown, 255);
+  }
   if (!is_power(picture.tone))
     return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown_by(picture.tone, linear_to_srgb8),
                            255);

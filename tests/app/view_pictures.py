@@ -31,7 +31,7 @@ class Pictures(BrowserTest):
     def test_exposure_and_tone_are_those_of_render(self):
         self.open()
         tone = Select(self.page.find_element("id", "tone"))
-        self.assertEqual([option.text for option in tone.options], ["srgb", "filmic", "aces", "neutral"])
+        self.assertEqual([option.text for option in tone.options], ["srgb", "filmic", "aces", "neutral", "raw"])
         slider = self.page.find_element("id", "exposure")
         self.do(lambda: slider.send_keys(Keys.ARROW_RIGHT * 3))
         self.wait(lambda: self.text("stops") == "0.75" and self.settled(), "the exposure")

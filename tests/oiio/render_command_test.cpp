@@ -92,7 +92,7 @@ TEST(RenderCommandFiles, FilmOptionsOverrideTheScene) {
   };
   EXPECT_NE(error("--filter", "tend").find("--filter: unknown kind 'tend'; did you mean 'tent'?"),
             std::string::npos);
-  EXPECT_NE(error("--tone", "x").find("expected srgb, filmic, aces or neutral"), std::string::npos);
+  EXPECT_NE(error("--tone", "x").find("expected srgb, filmic, aces, neutral or raw"), std::string::npos);
   EXPECT_NE(error("--exposure", "bright").find("--exposure: 'bright' is no number"), std::string::npos);
   EXPECT_NE(error("--exposure", "inf").find("--exposure: inf is out of range"), std::string::npos);
   EXPECT_NE(error("--error", "1.5").find("--error: 1.5 is out of range; expected 0 to 1"), std::string::npos);

@@ -14,6 +14,20 @@ namespace {
 
 using namespace test;
 
+TEST(Tone, RawNumbersAreThoseOfTheFile) {
+  // As sRGB's curve encodes it.
+  const auto encoded = [](float v) {
+    return v <= 0.0031308f ? 12.92 * v : 1.055 * std::pow(static_cast<double>(v), 1 / 2.4) - 0.055;
+  };
+  for (int byte = 0; byte < 256; ++byte) {
+    const float v = static_cast<float>(byte) / 255;
+    EXPECT_NEAR(encoded(toned({ToneKind::raw}, {v, 0, 2}).x), v, 1e-6);
+  }
+  EXPECT_EQ(toned({ToneKind::raw}, {-1, 0, 2}), (Color{0, 0, 1}));
+  // The exposure counts before.
+  EXPECT_NEAR(encoded(toned({ToneKind::raw, -1}, {0.4f, 0, 0}).x), 0.2, 1e-6);
+}
+
 TEST(Tone, SrgbLeavesLightAsItIs) {
   for (const Color& c : {Color{0.1f, 1, 30}, Color{-1, 0, kInf}, Color{1e30f, 1e-30f, 0.5f}})
     EXPECT_EQ(toned({}, c), c);
