@@ -126,7 +126,7 @@ class ExactChecker {
       }
       if (crossing != AlongRay::Crossing::yes) return;
     }
-    check_surface(ray, hit, next);
+    check_surface(ray, hit, truth, next);
   }
 
   void check_list(const Ray& ray, const AlongRay& f, const std::vector<long double>& truth) {
@@ -148,7 +148,7 @@ class ExactChecker {
   }
 
   /// Moved off the surface by its error bound, the position must be off it.
-  void check_surface(const Ray& ray, const Hit& hit, RayBatch* next) {
+  void check_surface(const Ray& ray, const Hit& hit, const std::vector<long double>& truth, RayBatch* next) {
     const SurfaceInteraction s = surface_interaction(*trial_.accel, ray, hit);
     const auto f = [&](const auto& p) { return trial_.oracle.f(mapped(trial_.to_own, Vec3l(p))); };
     const Vec3f n = s.geometric_normal;
@@ -163,7 +163,7 @@ class ExactChecker {
       slope = std::max(slope, std::abs(f1 - f0)), bend = std::max(bend, std::abs(f1 - 2 * here + f0));
     }
     const bool creased = bend > 0x1p-6L * slope;
-    if (creased && !(above > 0 && below < 0) && passes_through(f, s, out, in, ray, hit.t)) {
+    if (creased && !(above > 0 && below < 0) && passes_through(f, s, out, in, ray, truth)) {
       ++tally_.creased;
       return;
     }
@@ -184,19 +184,20 @@ class ExactChecker {
     next->push_back({outwards ? out : in, 0, Vec3f(d), std::numeric_limits<float>::infinity()});
   }
 
-  /// Whether a surface with an edge or a tip passes through the box of the error bound, by ever more samples.
+  /// Whether a surface with an edge or a tip passes through the box of the error bound: a crossing that the
+  /// oracle knows lies in it, or ever more samples find both sides.
   template <class F>
   static bool passes_through(const F& f, const SurfaceInteraction& s, const Vec3f& out, const Vec3f& in,
-                             const Ray& ray, long double t) {
+                             const Ray& ray, const std::vector<long double>& truth) {
     bool negative = false, positive = false;
     const auto look = [&](const auto& p) { (f(p) < 0 ? negative : positive) = true; };
     for (int i = 0; i <= 16; ++i) look(in + (out - in) * (static_cast<float>(i) / 16));
-    // A sliver may be thinner than all that, but the ray has met it.
-    for (int i = -64; i <= 64; ++i) {
-      const Vec3l p = Vec3l(Vec3d(ray.origin)) + Vec3l(Vec3d(ray.direction)) * (t * (1 + i * 0x1p-30L));
+    // A sliver may be thinner than all samples.
+    for (const long double t : truth) {
+      const Vec3l p = Vec3l(Vec3d(ray.origin)) + Vec3l(Vec3d(ray.direction)) * t;
       bool within = true;
       for (int k = 0; k < 3; ++k) within &= std::abs(p[k] - s.position[k]) <= s.position_error[k];
-      if (within) look(p);
+      if (within) return true;
     }
     for (int side = 2; side <= 16 && !(negative && positive); side *= 2) {
       const int row = 2 * side + 1;
