@@ -36,13 +36,13 @@ void print_finding(const std::string& text, std::set<std::string>& told) {
   const std::size_t end = text.rfind("; ");
   const bool again = end != std::string::npos && text.find(", ", end) != std::string::npos &&
                      !told.insert(text.substr(end)).second;
-  fmt::print("{}\n", again ? text.substr(0, end) : text);
+  fmt::print("{}\n", printable(again ? text.substr(0, end) : text));
 }
 
 /// Prints what is wrong in a file. Returns the exit status for it.
 int check(const std::string& path, const CheckArguments& arguments) {
   const Findings findings =
-      check_file(path, parse_definitions(arguments.definitions), {kPovFilm, arguments.pov_files});
+      check_file(path, parse_definitions(arguments.definitions), {kPovFilm, arguments.pov_files, say_as_is});
   const std::vector<SceneFinding>& list = findings.list;
   const std::size_t shown = std::min(list.size(), kMostShown);
   std::set<std::string> told;

@@ -41,7 +41,7 @@ struct ConvertArguments {
 int convert_scene(const ConvertArguments& arguments) {
   const PovConversion done =
       convert_pov(arguments.input, arguments.output, parse_definitions(arguments.definitions),
-                  {kPovFilm, arguments.pov_files});
+                  {kPovFilm, arguments.pov_files, arguments.quiet ? nullptr : &say_as_is});
   print_warnings(done.warnings);
   if (arguments.quiet) return 0;
   for (const std::string& mesh : done.meshes) fmt::print("wrote {}\n", mesh);
@@ -81,8 +81,9 @@ bool is_scene_file(const std::string& path) {
 
 /// Makes one mesh of a scene.
 Conversion mesh_scene(const ConvertArguments& arguments, const ConvertOptions& options) {
-  const Scene scene = load_scene(arguments.input, parse_definitions(arguments.definitions), std::nullopt,
-                                 options.gltf, {kPovFilm, arguments.pov_files});
+  const Scene scene =
+      load_scene(arguments.input, parse_definitions(arguments.definitions), std::nullopt, options.gltf,
+                 {kPovFilm, arguments.pov_files, arguments.quiet ? nullptr : &say_as_is});
   MeshFile file = mesh_of_scene(scene, scene_mesh_options(arguments));
   if (options.weld) weld_positions(file.mesh);
   return write_mesh(arguments.input, std::move(file), arguments.output, options);

@@ -160,7 +160,7 @@ int report_current_exception() {
     throw;
   } catch (const Error& error) {
     // An error with a location begins with it, so that editors can jump there.
-    say("{}{}\n", error.where().file.empty() ? "oktett: " : "", error.what());
+    say("{}{}\n", error.where().file.empty() ? "oktett: " : "", printable(error.what()));
     return error.kind() == ErrorKind::io ? kExitIo : kExitBadInput;
   } catch (const std::exception& error) {
     // The message about lost output follows at the end.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/command_line.h"
+#include "app/text.h"
 #include "app/unused_options.h"
 #include "core/error.h"
 #include "io/scene/scene_file.h"
@@ -25,6 +26,7 @@ static Scene load_overridden(const RenderArguments& arguments) {
   if (is_given(arguments.settings, "--integrator")) integrator = none.integrator.kind;
   PovOptions pov;
   pov.files = arguments.pov_files;
+  if (!arguments.quiet) pov.said = say_as_is;
   if (is_given(arguments.settings, "--size"))
     pov.film.width = none.film.width, pov.film.height = none.film.height;
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator,

@@ -44,9 +44,39 @@ double parse_amount(std::string_view option, std::string_view text, std::string_
   return amount;
 }
 
+std::string printable(std::string_view text) {
+  const auto byte = [&](std::size_t at) {
+    return static_cast<unsigned char>(at < text.size() ? text[at] : 0);
+  };
+  // The bytes of the character of UTF-8 at `at`; 0 if it is none.
+  const auto length = [&](std::size_t at) -> std::size_t {
+    const unsigned char first = byte(at);
+    const std::size_t size = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    for (std::size_t k = 1; k < size; ++k)
+      if ((byte(at + k) & 0xc0) != 0x80) return 0;
+    return first < 0xf5 ? size : 0;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = length(i);
+    // U+0080 to U+009F are control characters, too.
+    const bool is_control = size == 1
+                                ? (byte(i) < 0x20 && byte(i) != '\n' && byte(i) != '\t') || byte(i) == 0x7f
+                            : size == 2 ? byte(i) == 0xc2 && byte(i + 1) < 0xa0
+                                        : size == 0;
+    if (is_control)
+      for (std::size_t k = 0; k < std::max<std::size_t>(size, 1); ++k)
+        out += fmt::format("\\x{:02x}", byte(i + k));
+    else
+      out += text.substr(i, size);
+    i += std::max<std::size_t>(size, 1);
+  }
+  return out;
+}
+
 void print_warnings(const std::vector<Warning>& warnings, std::size_t most) {
   const std::size_t shown = std::min(warnings.size(), most);
-  for (std::size_t i = 0; i < shown; ++i) say("{}\n", to_string(warnings[i]));
+  for (std::size_t i = 0; i < shown; ++i) say("{}\n", printable(to_string(warnings[i])));
   if (warnings.size() > shown) say("... and {} more warnings\n", warnings.size() - shown);
 }
 

@@ -37,6 +37,10 @@ bool parse_number(std::string_view text, T& value) {
 double parse_amount(std::string_view option, std::string_view text, std::string_view unit, double least,
                     double most);
 
+/// What a file says, as a terminal may show it: without control characters, which are written as \x1b, but
+/// for the ends of lines and tabs.
+std::string printable(std::string_view text);
+
 /// Prints to stderr, formatted as by fmt. A message that nobody can read is no reason to lose a picture, so a
 /// closed or full stream is no error.
 template <class... T>
@@ -44,6 +48,9 @@ void say(fmt::format_string<T...> format, T&&... values) {
   const std::string text = fmt::format(format, std::forward<T>(values)...);
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
+
+/// Prints what a scene says itself to stderr.
+inline void say_as_is(const std::string& text) { say("{}", printable(text)); }
 
 /// Prints the first `most` warnings to stderr, and the number of the others.
 void print_warnings(const std::vector<Warning>& warnings, std::size_t most = 20);

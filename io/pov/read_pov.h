@@ -81,8 +81,8 @@ struct ReadOptions {
   std::string file_folder;
   ObjectQueries* queries = nullptr;  ///< null: none is answered
   Limits limits;
-  /// Gets what #debug says; null: it is dropped.
-  std::function<void(const std::string&)> debug;
+  /// Gets what #debug, #render and #statistics say; null: it is dropped.
+  std::function<void(const std::string&)> said;
 
   /// Where packages of POV-Ray put its include files.
   static std::vector<std::string> default_library_folders();

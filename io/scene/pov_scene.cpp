@@ -24,7 +24,7 @@ pov::TranslatedScene read_pov_tree(const std::string& path, const Definitions& d
   PovQueries queries;
   pov::ReadOptions options;
   options.queries = &queries;
-  options.file_folder = pov.files;
+  options.file_folder = pov.files, options.said = pov.said;
   options.image_width = static_cast<int>(film.width), options.image_height = static_cast<int>(film.height);
   for (const auto& [name, text] : definitions) {
     double value = 0;

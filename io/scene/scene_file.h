@@ -1,6 +1,7 @@
 #pragma once
 /// \file Reading scenes: scene files in YAML, and meshes alone.
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,6 +35,8 @@ inline const Film kPovFilm = [] {
 struct PovOptions {
   Film film = kPovFilm;  ///< its size
   std::string files;     ///< the only folder whose files its #fopen reads and writes; empty: none
+  /// Gets what its #debug, #render and #statistics say; null: it is dropped.
+  std::function<void(const std::string&)> said{};
 };
 
 /// Calls load_scene_file for .yaml and .yml, reads .pov in POV-Ray's language, and calls scene_from_mesh for

@@ -35,6 +35,22 @@ TEST(CheckCommand, ExitStatusSaysWhetherSomethingIsWrong) {
   EXPECT_EQ(run_command(dir, {"check"}).status, 2);
 }
 
+/// What a file says may hold what a terminal would obey.
+TEST(CheckCommand, ShowsControlCharactersAsText) {
+  const TempDir dir;
+  dir.write("said.pov",
+            "#version 3.7;\n#warning concat(\"a\", chr(27), \"[2J\\tb\")\n#debug concat(\"c\", chr(155), "
+            "chr(7), \"\\n\")\n"
+            "#render \"d\\n\"\nlight_source { -9*z, 1 }\ncamera { location -5*z }\nsphere { 0, 1 pigment { "
+            "rgb 1 } }\n");
+  const CommandResult pov = run_command(dir, {"check", "said.pov"});
+  EXPECT_EQ(pov.out, "said.pov:2:1: warning: a\\x1b[2J\tb\n");
+  EXPECT_EQ(pov.err, "c\\x9b\\x07\nd\noktett: said.pov: 0 errors, 1 warning\n");
+  const CommandResult quiet =
+      run_command(dir, {"render", "--quiet", "--size", "8x8", "-o", "x.png", "said.pov"});
+  EXPECT_EQ(quiet.err, "said.pov:2:1: warning: a\\x1b[2J\tb\n");
+}
+
 /// Rendering still ends at the first error.
 TEST(CheckCommand, RenderTellsTheFirstErrorOnly) {
   const TempDir dir;
