@@ -106,7 +106,7 @@ bool Interpreter::follow_directive(const Token& hash) {
     case "render"_kw:
     case "statistics"_kw: {
       const std::string text = parse_string();
-      if (options_.debug && keyword == "debug"_kw) options_.debug(text);
+      if (options_.said) options_.said(text);
       break;
     }
     case "warning"_kw:
@@ -220,8 +220,19 @@ void Interpreter::declare(bool local) {
     if (!assign(element ? *element : variable(name, local, scope), std::move(value), name.where))
       fail(name.where, "the array " + in_quotes(name.name->text) + " has changed in between");
   };
+  while (next_is('#') && pending_.empty()) {
+    // Other names may be declared before the value of this one.
+    const Cursor start = at_;
+    const Token hash = take_written();
+    const Cursor behind = at_;
+    const Keyword directive = take_written().keyword();
+    const bool declares = directive == "declare"_kw || directive == "local"_kw;
+    at_ = declares ? behind : start;
+    if (!declares || !follow_directive(hash)) break;
+  }
   const Hold outer = hold_;
-  hold_ = {frames_.size(), open_.size(), false};
+  const std::size_t frames = frames_.size();
+  hold_ = {frames, open_.size(), false};
   Datum value = named(parse_value(), name);
   // Textures in a row are the layers of one.
   if (const BlockPtr* first = value.get<BlockPtr>();
@@ -245,6 +256,8 @@ void Interpreter::declare(bool local) {
     }
     if (layers != nullptr) value.value = BlockPtr(std::move(layers));
   }
+  // Behind the value that a macro gave, the macro ends.
+  if (hold_.all = true; frames_.size() > frames) peek();
   hold_ = outer;
   if (!pending_.empty() && pending_.back().kind == Token::Kind::held) pending_.pop_back();
   if (next_is(';')) take();
@@ -590,7 +603,9 @@ void Interpreter::include(const Place& where) {
   if (next_is(';')) take();
   count_step(where, kStepsOfFile);
   const std::vector<std::string> folders = folders_for(name, at_.source->path, document_.files[0], options_);
-  const std::string path = find_file(name, folders);
+  std::string path = find_file(name, folders);
+  for (const char* ending : {".inc", ".INC"})
+    if (path.empty()) path = find_file(name + ending, folders);
   if (path.empty())
     fail(where, "cannot include " + in_quotes(name) + ": no such file beside " + in_quotes(at_.source->path) +
                     " or in a library folder" + did_you_mean_file((fs::path(folders[0]) / name).string()));
@@ -605,14 +620,14 @@ void Interpreter::set_version() {
     if (peek().kind == Token::Kind::word) take();
     parse_float();
   } else {
-    version_ = parse_float();
+    version_ = parse_float(), version_stated_ = true;
   }
   hold_ = outer;
   if (!pending_.empty() && pending_.back().kind == Token::Kind::held) pending_.pop_back();
   if (next_is(';')) take();
 }
 
-/// Later defaults add to earlier ones; a whole texture replaces them.
+/// Later defaults add to earlier ones, also where they are whole textures.
 void Interpreter::set_default(const Place& where) {
   const Token opening = peek();
   expect('{', "behind #default");
@@ -626,7 +641,8 @@ void Interpreter::set_default(const Place& where) {
   for (Element& element : given.elements) {
     const auto* block = std::get_if<BlockPtr>(&element.value);
     if (block == nullptr) continue;
-    if ((*block)->keyword == "texture") texture->elements = (*block)->elements;
+    if ((*block)->keyword == "texture")
+      texture->elements.insert(texture->elements.end(), (*block)->elements.begin(), (*block)->elements.end());
     if ((*block)->keyword != "camera" && (*block)->keyword != "texture") texture->elements.push_back(element);
   }
   default_texture_ = std::move(texture);

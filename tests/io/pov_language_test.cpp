@@ -48,7 +48,7 @@ struct Result {
 Result read(const std::string& text, ReadOptions options = {}) {
   const TempDir dir;
   Result result;
-  options.debug = [&result](const std::string& said) { result.debug += said; };
+  options.said = [&result](const std::string& said) { result.debug += said; };
   result.document = pov::read_pov(dir.write("a.pov", text), options);
   return result;
 }
@@ -551,7 +551,7 @@ TEST(PovLanguage, VersionsOfIncludesStay) {
   dir.write("old.inc", "#version 3.5;");
   std::string said;
   ReadOptions options;
-  options.debug = [&said](const std::string& text) { said += text; };
+  options.said = [&said](const std::string& text) { said += text; };
   const std::string scene =
       dir.write("a.pov", "#version 3.7; #include \"old.inc\" #debug str(version, 0, 1)");
   EXPECT_EQ(pov::read_pov(scene, options).version, 3.5);
@@ -683,8 +683,28 @@ TEST(PovLanguage, IncludesHaveScopesAndPlaces) {
   // A declaration may end with the file.
   dir.write("d.inc", "#declare A = 5");
   EXPECT_NO_THROW(pov::read_pov(dir.write("d.pov", "#include \"d.inc\" #declare B = A;")));
+  // Names may lack their ending.
+  EXPECT_EQ(pov::read_pov(dir.write("e.pov", "#include \"d\" #declare B = A;")).files.size(), 2u);
   const std::string again = dir.write("c.pov", "#include \"c.pov\"");
   EXPECT_THROW(pov::read_pov(again), Error);
+}
+
+/// Macros give values of any kind, within each other, too.
+TEST(PovLanguage, MacrosThatGiveValuesCallOthers) {
+  const std::string inner = "#macro A() #local M = array[1]; #local M[0] = 2; M #end ";
+  EXPECT_EQ(debug_of(inner + "#macro B() #local D = A(); D #end #declare E = B(); #debug str(E[0], 0, 0)"),
+            "2");
+  EXPECT_EQ(debug_of("#macro A() \"x\" #end #macro B() #local D = A(); #if (1) concat(D, \"y\") #end #end "
+                     "#declare E = B(); #debug E"),
+            "xy");
+  EXPECT_EQ(
+      debug_of("#macro A() \"x\" #end #macro B() #local D = A() #debug D D #end #declare E = B() #debug E"),
+      "xx");
+}
+
+TEST(PovLanguage, NamesAreDeclaredBeforeAValue) {
+  EXPECT_EQ(debug_of("#declare A =\n#declare B = 2;\n#local C = 3; B + C; #debug str(A, 0, 0)"), "5");
+  EXPECT_EQ(debug_of("#declare A = #if (1) 4 #else 5 #end; #debug str(A, 0, 0)"), "4");
 }
 
 // What the packages of POV-Ray install.

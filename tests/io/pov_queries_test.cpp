@@ -28,7 +28,7 @@ std::string debug_of(const std::string& text, std::uint64_t steps = 0) {
   options.queries = &queries;
   if (steps > 0) options.limits.steps = steps;
   std::string said;
-  options.debug = [&said](const std::string& more) { said += more; };
+  options.said = [&said](const std::string& more) { said += more; };
   try {
     pov::read_pov(dir.write("a.pov", "#version 3.7;\n" + text), options);
   } catch (const Error& e) {

@@ -13,6 +13,7 @@
 #include "io/pov/translate/translate.h"
 #include "io/scene/scene_file.h"
 #include "io/yaml/write_yaml.h"
+#include "render/geometry.h"
 #include "render/picture/render.h"
 #include "tests/io/palette_png.h"
 #include "tests/support/temp_dir.h"
@@ -493,6 +494,27 @@ TEST(PovScene, CamerasAreFrames) {
       "{from: [0, 0, -5], frame: {right: [2, 0, 0], up: [0, 1, 0], direction: [0, 0, 1.0000000000000002]}}");
 }
 
+// As programs of chemistry write cameras.
+TEST(PovScene, AnAngleOfZeroIsNone) {
+  const PovFiles files;
+  const auto camera = [&](const std::string& text) {
+    return files.section("#version 3.7;\ncamera { " + text + " }", "camera");
+  };
+  EXPECT_EQ(camera("location -5*z angle 0 look_at 0"), camera("location -5*z look_at 0"));
+  const std::string sized = " right -3*x up 4*y direction 50*z location 100*z look_at 0";
+  // With an angle, whichever it is, the picture is as wide as that in perspective at what is looked at.
+  EXPECT_EQ(camera("orthographic angle 0" + sized),
+            "{projection: orthographic, from: [0, 0, 100], frame: {right: [6, 0, 0], up: [0, 8, 0], "
+            "direction: [0, 0, "
+            "-50]}}");
+  EXPECT_EQ(camera("orthographic" + sized),
+            "{projection: orthographic, from: [0, 0, 100], frame: {right: [3, 0, 0], up: [0, 4, 0], "
+            "direction: [0, 0, "
+            "-50]}}");
+  for (const char* angle : {"orthographic angle 180", "angle 180", "angle -1"})
+    EXPECT_THROW(camera(angle), Error) << angle;
+}
+
 TEST(PovScene, CurvedCamerasKeepTheirVectors) {
   const PovFiles files;
   const auto camera = [&](const std::string& text) {
@@ -620,9 +642,44 @@ TEST(PovScene, WhatCannotBeMeantIsToldOnce) {
   EXPECT_EQ(files.warnings(
                 "#version 3.7;\nsphere { 0, 1 normal { facets coords 1 } }\nsphere { x, 1 normal { facets "
                 "coords 1 } }\n"
-                "intersection { box { -1, 1 } triangle { 0, x, y } }\n"),
+                "intersection { box { -1, 1 } cylinder { 0, y, 1 open } }\n"),
             "scene.pov:2:24: warning: 'facets' in 'normal' has no meaning here: surfaces are smooth\n"
-            "scene.pov:4:30: warning: 'triangle' has no inside here, and is left out of the combination\n");
+            "scene.pov:4:30: warning: in combinations objects that are 'open' are closed\n");
+}
+
+/// Whatever it is, what is cut is open where it was cut.
+TEST(PovScene, WhatHasNoInsideIsCut) {
+  const PovFiles files;
+  const auto hits = [&](const std::string& object, const Vec3f& from) {
+    const Scene scene = load_scene(files.dir.write("cut.pov", "#version 3.7;\n" + object));
+    const World world = build_world(scene);
+    std::vector<Hit> found;
+    all_hits(*world.accel, {from, 0, {0, 0, 1}, 100}, found);
+    return found.size();
+  };
+  const Vec3f left{-0.3f, 0.1f, -9}, right{0.3f, 0.1f, -9};
+  const std::string wall = "<-1, -1, 0>, <1, -1, 0>, <0, 3, 0>", clip = " clipped_by { plane { x, 0 } }";
+  for (const std::string& object :
+       {"triangle { " + wall + clip + " }", "disc { 0, z, 1" + clip + " }",
+        "polygon { 5, <-1, -1>, <1, -1>, <1, 1>, <-1, 1>, <-1, -1>" + clip + " }",
+        "mesh { triangle { " + wall + " } triangle { <5, 5, 5>, <6, 5, 5>, <5, 6, 5> } " + clip + " }",
+        "union { triangle { " + wall + " } disc { <5, 0, 0>, z, 1 }" + clip + " }",
+        "#declare T = union { triangle { " + wall + " } }\nobject { T" + clip + " }",
+        "intersection { triangle { " + wall + " } plane { x, 0 } }",
+        "difference { triangle { " + wall + " } plane { -x, 0 } }",
+        // Whatever it is taken from is not seen, either.
+        "difference { plane { x, 0 } triangle { " + wall + " } }",
+        "bicubic_patch { type 1 <-1,-1,0>, <-0.3,-1,0>, <0.3,-1,0>, <1,-1,0> <-1,-0.3,0>, <-0.3,-0.3,0>, "
+        "<0.3,-0.3,0>, <1,-0.3,0> <-1,0.3,0>, <-0.3,0.3,0>, <0.3,0.3,0>, <1,0.3,0> <-1,1,0>, <-0.3,1,0>, "
+        "<0.3,1,0>, <1,1,0>" +
+            clip + " }"}) {
+    EXPECT_EQ(hits(object, left), 1u) << object;
+    EXPECT_EQ(hits(object, right), 0u) << object;
+  }
+  // Open tubes stay open, cut at both ends or not.
+  EXPECT_EQ(hits("cylinder { -z, z, 1 open clipped_by { plane { z, 0 } } }", left), 0u);
+  EXPECT_EQ(hits("cylinder { -x, x, 1 open clipped_by { plane { x, 0 } } }", left), 2u);
+  EXPECT_EQ(hits("cylinder { -x, x, 1 open clipped_by { plane { x, 0 } } }", right), 0u);
 }
 
 TEST(PovScene, ErrorsHaveTheirPlace) {

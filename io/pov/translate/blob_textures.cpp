@@ -97,9 +97,10 @@ struct Group {
   std::vector<BlobField> fields;
 };
 
-std::shared_ptr<Block> texture_block(const Place& where) {
+/// One that begins with the default of a blob or a component.
+std::shared_ptr<Block> texture_block(const Block& of) {
   auto block = std::make_shared<Block>();
-  block->keyword = "texture", block->where = where;
+  block->keyword = "texture", block->where = of.where, block->default_texture = of.default_texture;
   return block;
 }
 
@@ -122,7 +123,7 @@ std::shared_ptr<const Function> share_of(const Place& where, const std::vector<G
 
 /// The look with its own elements that `blob` has, without its transforms.
 std::shared_ptr<const Block> texture_of_blob(const Block& blob) {
-  auto texture = texture_block(blob.where);
+  auto texture = texture_block(blob);
   for (const Element& e : blob.elements)
     if (const Block* const inner = block_of(e); inner != nullptr && is_look(inner->keyword))
       texture->elements.push_back(e);
@@ -154,7 +155,7 @@ std::shared_ptr<const Block> texture_of_component(const Block& component) {
     if (named.get() == next) return named;
     only = next;
   }
-  auto texture = texture_block(component.where);
+  auto texture = texture_block(component);
   // Numbers and words before the look are those of the shape.
   const auto first =
       std::ranges::find_if(component.elements, [](const Element& e) { return block_of(e) != nullptr; });
@@ -204,7 +205,7 @@ std::shared_ptr<const Block> blended_texture(Context& context, const Block& blob
       map->elements.push_back({blob.where, std::shared_ptr<const Block>(block)});
     };
     entry(0, look), entry(1, groups[i].texture);
-    auto texture = texture_block(blob.where);
+    auto texture = texture_block(blob);
     texture->elements.push_back({blob.where, share_of(blob.where, groups, i)});
     texture->elements.push_back({blob.where, std::shared_ptr<const Block>(map)});
     look = texture;

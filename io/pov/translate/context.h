@@ -34,6 +34,8 @@ struct Context {
   std::string mesh_prefix;
   ObjectQueries* queries = nullptr;  ///< null: nobody can be asked for values of functions
   double gamma = 1;                  ///< in which light is computed
+  bool encoded = false;              ///< as screens have it, or nearly
+  bool raw = false;                  ///< the file holds the numbers
   std::uint32_t samples = 0;         ///< per pixel, that the camera asks for; 0: it asks for none
   bool has_fog = false;              ///< or media: it matters which solids are hollow
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each

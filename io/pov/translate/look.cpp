@@ -41,6 +41,13 @@ class MaterialWriter {
 
   /// `medium`: the name of what fills solids; empty: nothing does.
   Node write(const Look& look, const Interior& interior, const std::string& medium) {
+    if (const double seen_through = straight(look, interior, medium); seen_through > 0) {
+      Look opaque = look;
+      opaque.pigment.solid.transmit = 0;
+      const Node map = write(opaque, interior, medium);
+      tree_.put(map, "opacity", tree_.number(where_, 1 - seen_through));
+      return map;
+    }
     const Node map = tree_.map(where_);
     const bool transparent = is_transparent(look);
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
@@ -77,6 +84,17 @@ class MaterialWriter {
   }
 
  private:
+  /// How much light passes a surface that neither bends nor colours it, so that it counts as no bounce; 0 of
+  /// what mirrors or shines, too, or has something inside.
+  static double straight(const Look& look, const Interior& interior, const std::string& medium) {
+    if (!look.is_plain() || !is_solid(look.pigment) || !medium.empty()) return 0;
+    const Finish& f = look.finish;
+    const bool is_dull = f.phong <= 0 && f.specular <= 0 && !mirrors(f) && f.emission == Vec3d{0, 0, 0};
+    const PovColor& c = look.pigment.solid;
+    if (!is_dull || f.ior.value_or(interior.ior) != 1 || c.filter != 0) return 0;
+    return std::clamp(c.transmit, 0.0, 1.0);
+  }
+
   using PlainNode = std::function<Node(const Look&)>;
 
   static double ambient_of(const Finish& f) { return is_grey(f.ambient) ? std::max(0.0, f.ambient.x) : 0; }
@@ -330,10 +348,15 @@ static void read_sky(Context& context, const Block& block, Look& look) {
   }
 }
 
-Node sky_node(Context& context, const Block& block) {
+Node sky_node(Context& context, const Block& block, const Vec3d& background) {
   Look look;
   read_sky(context, block, look);
   if (look.layers.empty()) return nullptr;
+  if (!(background == Vec3d{0, 0, 0}) && is_transparent(look.layers.front())) {
+    Look below;
+    below.pigment.solid = {background};
+    look.layers.insert(look.layers.begin(), std::move(below));
+  }
   return MaterialWriter(context, block.where).color(look);
 }
 
@@ -369,42 +392,28 @@ UvShape uv_shape(std::string_view keyword) {
 
 }  // namespace
 
-Look Wardrobe::look_of(const Dress& dress, const std::shared_ptr<const Block>& default_texture) {
-  Look base;
-  if (default_texture != nullptr) read_look(context_, *default_texture, base);
-  base.name.clear();
-  Look look = base;
-  if (dress.textures.size() == 1) read_look(context_, *dress.textures[0], look);
-  if (dress.textures.size() > 1)
-    for (const auto& texture : dress.textures) read_look(context_, *texture, look.layers.emplace_back(base));
-  for (const auto& finish : dress.finishes) read_look(context_, *finish, look);
-  look.lay(uv_shape(dress.shape).uv);
-  if (dress.to_texture == Affine{}) return look;
-  if (!dress.to_texture.is_invertible()) return look;
-  Moves moves;
-  moves.add({Move::Kind::matrix, {}, dress.to_texture.inverse(), {}});
-  look.move_in_space(moves);
-  return look;
-}
-
 Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& default_texture,
                         const Place& where) {
   std::vector<const Block*> blocks;
-  for (const auto& block : dress.textures) blocks.push_back(block.get());
-  for (const auto& block : dress.finishes) blocks.push_back(block.get());
+  bool is_moved = false;
+  for (const LookItem& item : dress.items) {
+    blocks.push_back(item.block.get()), blocks.push_back(item.default_texture.get());
+    is_moved |= !(item.to_texture == Affine{}) || item.by_uv;
+  }
   const auto key = std::tuple(blocks, static_cast<const Block*>(dress.interior.get()),
                               static_cast<const Block*>(default_texture.get()), uv_shape(dress.shape).word);
   Interior interior;
   if (dress.interior) read_interior(context_, *dress.interior, interior);
-  const bool is_placed = !(dress.to_texture == Affine{}) || interior.fills() || !dress.back.empty();
+  const bool is_placed = is_moved || interior.fills() || !dress.back.empty();
   if (!is_placed)
     if (const auto found = known_.find(key); found != known_.end()) return name_node(where, found->second);
-  const Look look = look_of(dress, default_texture);
+  Look look = look_of(context_, dress.items, default_texture);
+  look.lay(uv_shape(dress.shape).uv);
   const std::string medium = dress.solid ? media_.name(interior, dress.interior_to_world, dress.hollow) : "";
   const Node node = MaterialWriter(context_, where).write(look, interior, medium);
   if (!dress.back.empty()) {
     Dress back;
-    back.textures = dress.back, back.interior = dress.interior, back.to_texture = dress.to_texture;
+    back.items = dress.back, back.interior = dress.interior;
     back.solid = false, back.shape = dress.shape;
     context_.tree.put(node, "back", material(back, default_texture, where));
   }

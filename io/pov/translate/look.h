@@ -15,19 +15,21 @@ namespace oktett::pov {
 
 /// What an object is dressed with, its own or that of a union around it.
 struct Dress {
-  std::vector<std::shared_ptr<const Block>>
-      textures;                                    ///< blocks `texture` or `pigment`, the lowest layer first
-  std::vector<std::shared_ptr<const Block>> back;  ///< blocks `interior_texture`; empty: both sides alike
-  std::vector<std::shared_ptr<const Block>> finishes;  ///< blocks `finish` and `normal` that stand alone
-  std::shared_ptr<const Block> interior;               ///< or null
-  std::string_view shape;                              ///< the keyword of what is dressed
-  Affine to_texture;  ///< from the space of the object before its transforms to that of the textures
+  std::vector<LookItem> items;            ///< in order
+  std::vector<LookItem> back;             ///< blocks `interior_texture`, as textures; empty: both sides alike
+  std::shared_ptr<const Block> interior;  ///< or null
+  std::string_view shape;                 ///< the keyword of what is dressed
 
   Affine interior_to_world;  ///< from the space of the interior
   bool hollow = false;       ///< so that media show
   bool solid = true;         ///< else nothing fills it
 
-  bool has_texture() const { return !textures.empty() || !finishes.empty(); }
+  bool has_texture() const { return !items.empty(); }
+  /// A map from a space before that of the object to it.
+  void put_before(const Affine& map) {
+    for (LookItem& item : items) item.to_texture = item.to_texture * map;
+    for (LookItem& item : back) item.to_texture = item.to_texture * map;
+  }
 };
 
 /// Makes materials, each once.
@@ -43,7 +45,6 @@ class Wardrobe {
   Node invisible(const Place& where);
 
  private:
-  Look look_of(const Dress& dress, const std::shared_ptr<const Block>& default_texture);
   Node name_node(const Place& where, const std::string& name) { return context_.tree.text(where, name); }
 
   Context& context_;
@@ -54,8 +55,8 @@ class Wardrobe {
   std::set<std::string> taken_;
 };
 
-/// The pigments of a block `sky_sphere` by the direction, as a value of scene files: a colour or a texture.
-/// Null if it has none.
-Node sky_node(Context& context, const Block& block);
+/// The pigments of a block `sky_sphere` by the direction, over `background`, as a value of scene files: a
+/// colour or a texture. Null if it has none.
+Node sky_node(Context& context, const Block& block, const Vec3d& background);
 
 }  // namespace oktett::pov

@@ -71,7 +71,7 @@ bool ObjectWriter::is_dressed(const Block& block) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     if (inner == nullptr || *inner == nullptr) continue;
     const std::string_view k = (*inner)->keyword;
-    if (k == "texture" || k == "pigment" || k == "material" || k == "finish") return true;
+    if (k == "texture" || k == "pigment" || k == "material" || k == "finish" || k == "normal") return true;
     if (is_object(k)) any_child = true, all &= is_dressed(**inner);
   }
   if (!block.name.empty()) dressed_[&block] = any_child && all;
@@ -93,7 +93,7 @@ bool ObjectWriter::holds(std::map<const Block*, bool>& known, const Block& block
 
 void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
   Outer outer;
-  outer.to_world = moves.all;
+  outer.to_world = moves.all, outer.default_texture = block->default_texture;
   const Maybe built = build(block, outer);
   if (!built || built->node == nullptr) return;
   Node node = built->node;
@@ -160,7 +160,7 @@ ObjectWriter::Maybe ObjectWriter::build_instance(const std::shared_ptr<const Blo
   auto found = prototypes_.find(block.get());
   if (found == prototypes_.end()) {
     Outer inside;
-    inside.default_texture = block->default_texture;
+    inside.default_texture = outer.default_texture;
     inside.prototype = true;
     const Maybe built = build_object(*block, inside);
     Prototype prototype;
@@ -172,15 +172,31 @@ ObjectWriter::Maybe ObjectWriter::build_instance(const std::shared_ptr<const Blo
   }
   const Prototype& prototype = found->second;
   if (prototype.name.empty()) return std::nullopt;
-  (void)outer;
   const Node node =
       context_.tree.map(block->where, "instance", context_.tree.text(block->where, prototype.name));
   return Built{node, prototype.solid, false};
 }
 
-ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& given) {
-  Outer outer = given;
-  if (block.default_texture) outer.default_texture = block.default_texture;
+/// Whether an object, or the one that it is a copy of, has a texture or a part of one.
+static bool has_own_look(const Block& block) {
+  return std::ranges::any_of(block.elements, [&](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    if (inner == nullptr || *inner == nullptr) return false;
+    constexpr std::array<std::string_view, 5> kLooks{"texture", "pigment", "finish", "normal", "material"};
+    return std::ranges::find(kLooks, (*inner)->keyword) != kLooks.end() ||
+           (block.keyword == "object" && is_object((*inner)->keyword) && has_own_look(**inner));
+  });
+}
+
+/// What stands behind an object in a block `object` goes on with it.
+static Block continued(const Block& object, const Block& behind) {
+  Block whole = object;
+  whole.elements.insert(whole.elements.end(), behind.elements.begin(), behind.elements.end());
+  if (!has_own_look(object)) whole.default_texture = behind.default_texture;
+  return whole;
+}
+
+ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& outer) {
   const std::string_view k = block.keyword;
   Arguments arguments(context_, block);
   const bool is_union = k == "union" || k == "merge";
@@ -205,6 +221,9 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
     context_.warn(block.where, fmt::format("'{}' contains no object, and is left out", k));
     return std::nullopt;
   }
+  if (k == "object" && children.size() == 1 && children[0]->keyword != "light_source" && m.changes_look() &&
+      !hidden_ && !asked_)
+    return build_object(continued(*children[0], rest), outer);
   return build_children(block, children, m, outer);
 }
 
@@ -237,13 +256,6 @@ static std::shared_ptr<const Block> texture_of_back(const Block& block) {
   return texture;
 }
 
-/// A texture or pigment whose object says `uv_mapping` before it.
-static std::shared_ptr<const Block> texture_by_uv(std::shared_ptr<const Block> inner) {
-  const Place where = inner->where;
-  return std::make_shared<Block>(
-      Block{"texture", where, {{where, Word{"uv_mapping"}}, {where, std::move(inner)}}, {}, nullptr});
-}
-
 ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Arguments& a) {
   Modifiers m;
   bool by_uv = false;
@@ -253,18 +265,16 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
     if (const std::shared_ptr<const Block> inner = a.peek_shared_block()) {
       a.take();
       const std::string_view k = inner->keyword;
-      if (k == "texture" || k == "pigment") {
-        m.own.textures.push_back(by_uv ? texture_by_uv(inner) : inner), m.own.to_texture = m.moves.all;
-      } else if (k == "finish" || k == "normal") {
-        m.own.finishes.push_back(inner), m.own.to_texture = m.moves.all;
+      if (k == "texture" || k == "pigment" || k == "finish" || k == "normal") {
+        m.own.items.push_back({inner, block.default_texture, m.moves.all, by_uv});
       } else if (k == "interior") {
         m.own.interior = inner, m.before_interior = m.moves.all;
       } else if (k == "material") {
-        read_material(*inner, m);
+        read_material(*inner, block.default_texture, m);
       } else if (k == "clipped_by") {
         m.clips.push_back({inner, m.moves.list.size()});
       } else if (k == "interior_texture") {
-        m.own.back.push_back(texture_of_back(*inner));
+        m.own.back.push_back({texture_of_back(*inner), block.default_texture, m.moves.all});
       } else if (k == "bounded_by") {
         m.bounds.push_back({inner, m.moves.list.size()});
       } else if (k != "photons" && k != "radiosity" && k != "uv_mapping") {
@@ -295,30 +305,39 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
     else
       a.take();
   }
-  (void)block;
   return m;
 }
 
-/// The texture and interior of a block `material`.
-void ObjectWriter::read_material(const Block& block, Modifiers& m) {
-  for (const Element& e : block.elements) {
-    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
-    if (inner == nullptr || *inner == nullptr) continue;
-    if ((*inner)->keyword == "texture") m.own.textures.push_back(*inner), m.own.to_texture = m.moves.all;
-    if ((*inner)->keyword == "interior_texture") m.own.back.push_back(texture_of_back(**inner));
-    if ((*inner)->keyword == "interior") m.own.interior = *inner, m.before_interior = m.moves.all;
-    if ((*inner)->keyword == "material") read_material(**inner, m);
+/// The textures and the interior of a block `material`, whose transforms move these alone.
+void ObjectWriter::read_material(const Block& block, const std::shared_ptr<const Block>& default_texture,
+                                 Modifiers& m) {
+  Arguments a(context_, block);
+  while (!a.at_end()) {
+    Moves moves;
+    if (take_moves(context_, a, moves)) {
+      if (!moves.all.is_invertible()) continue;
+      const Affine back = moves.all.inverse();
+      for (LookItem& item : m.own.items) item.to_texture = back * item.to_texture;
+      for (LookItem& item : m.own.back) item.to_texture = back * item.to_texture;
+      m.before_interior = back * m.before_interior;
+      continue;
+    }
+    const std::shared_ptr<const Block> inner = a.peek_shared_block();
+    a.take();
+    if (inner == nullptr) continue;
+    if (inner->keyword == "texture") m.own.items.push_back({inner, default_texture, m.moves.all});
+    if (inner->keyword == "interior_texture")
+      m.own.back.push_back({texture_of_back(*inner), default_texture, m.moves.all});
+    if (inner->keyword == "interior") m.own.interior = inner, m.before_interior = m.moves.all;
+    if (inner->keyword == "material") read_material(*inner, default_texture, m);
   }
 }
 
 /// The look of an object with these modifiers, as seen from its space before its transforms.
 Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
   Dress dress = outer.dress;
-  dress.to_texture = dress.to_texture * m.moves.all;
-  if (m.own.has_texture()) {
-    dress.textures = m.own.textures, dress.back = m.own.back, dress.finishes = m.own.finishes,
-    dress.to_texture = m.own.to_texture;
-  }
+  dress.put_before(m.moves.all);
+  if (m.own.has_texture()) dress.items = m.own.items, dress.back = m.own.back;
   if (!m.own.back.empty()) dress.back = m.own.back;
   if (m.hollow) dress.hollow = true;
   if (!m.own.interior) return dress;
@@ -341,7 +360,7 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     return inner != nullptr && *inner != nullptr && (*inner)->keyword == "clipped_by";
   });
-  std::optional<Shapes> shapes = make_shapes(context_, arguments, limits, outer.operand || is_clipped);
+  std::optional<Shapes> shapes = make_shapes(context_, arguments, limits, {outer.operand, is_clipped});
   const Modifiers m = read_modifiers(block, arguments);
   if (!shapes || shapes->parts.empty()) return std::nullopt;
   Tree& tree = context_.tree;
@@ -351,8 +370,8 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   const bool single = shapes->parts.size() == 1;
   for (Shape& shape : shapes->parts) {
     Dress own = dress;
-    if (shape.texture) own.textures = {shape.texture}, own.finishes.clear();
-    own.to_texture = own.to_texture * shape.first.all, own.solid = shapes->solid;
+    if (shape.texture) own.items = {{shape.texture, block.default_texture, {}}};
+    own.put_before(shape.first.all), own.solid = shapes->solid;
     const Node node = tree.map(block.where, shape.key, shape.value);
     // What only cuts has no surface; that of what is asked has no look.
     if (hidden_ || shape.invisible)
@@ -366,7 +385,7 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   }
   if (single) return finish(block, m, outer, parts[0], m.clips.empty());
   Built whole;
-  if (shapes->meet || outer.operand || is_clipped) {
+  if (shapes->meet || (shapes->solid && (outer.operand || is_clipped))) {
     whole = combine(block.where, shapes->meet ? "intersection" : "union", parts);
     whole.solid = shapes->solid;
   } else {
@@ -415,9 +434,9 @@ std::vector<ObjectWriter::Built> ObjectWriter::build_all(
     }
     Maybe part = build(child, outer);
     if (part && outer.operand && !part->solid) {
-      context_.warn(child->where, fmt::format("'{}' has no inside here, and is left out of the combination",
-                                              child->keyword));
-      part.reset();
+      *part = surfaces_of(child->where, *part);
+      // A box without thickness has the opposite of nothing.
+      if (child->keyword == "box") part->surfaces = false;
     }
     built.push_back(part ? *part : Built{});
   }
@@ -489,10 +508,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
   };
   for (const Modifiers::Clip& clip : m.clips) {
     if (!moved) move(moves_until(clip.moves_before));
-    if (!built.solid) {
-      context_.tell("clipped flat", clip.block->where, "what has no inside is not cut by 'clipped_by'");
-      continue;
-    }
+    if (!built.solid) built = surfaces_of(where, built);
     Outer inside;
     inside.operand = true, inside.default_texture = outer.default_texture;
     const bool was_hidden = std::exchange(hidden_, true);
@@ -504,7 +520,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
     built = combine(where, "intersection", {built, cutter});
   }
   if (!moved) move(moves_until(m.moves.list.size()));
-  if (m.inverse) built.negative = !built.negative;
+  if (m.inverse && !built.surfaces) built.negative = !built.negative;
   if (m.hollow && context_.has_fog && !outer.operand) set_hollow(built.node, where);
   if (m.hides()) {
     if (outer.operand) {
@@ -556,6 +572,11 @@ void ObjectWriter::extend_transform(Node object, const Moves& moves) {
 
 // ---- Combinations.
 
+/// What has no inside, as an operand.
+ObjectWriter::Built ObjectWriter::surfaces_of(const Place& where, const Built& built) {
+  return {list_node(where, "surfaces", {built.node}), true, false, true};
+}
+
 Node ObjectWriter::list_node(const Place& where, std::string_view key, const std::vector<Node>& items) {
   const Node list = context_.tree.list(where);
   for (const Node item : items) Tree::push(list, item);
@@ -565,7 +586,7 @@ Node ObjectWriter::list_node(const Place& where, std::string_view key, const std
 /// A combination whose parts may be negative: scene files have none that are, but differences.
 ObjectWriter::Built ObjectWriter::combine(const Place& where, std::string_view op, std::vector<Built> parts) {
   if (op == "difference") {
-    for (std::size_t i = 1; i < parts.size(); ++i) parts[i].negative = !parts[i].negative;
+    for (std::size_t i = 1; i < parts.size(); ++i) parts[i].negative ^= !parts[i].surfaces;
     op = "intersection";
   }
   std::vector<Node> positive, negative;

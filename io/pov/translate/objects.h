@@ -54,6 +54,7 @@ class ObjectWriter {
   struct Built {
     Node node = nullptr;
     bool solid = true, negative = false;
+    bool surfaces = false;  ///< an operand without an inside, which has no opposite
   };
   /// What stands behind the arguments of an object.
   struct Modifiers;
@@ -66,7 +67,8 @@ class ObjectWriter {
                        const Modifiers& m, const Outer& outer);
   Maybe build_instance(const std::shared_ptr<const Block>& block, const Outer& outer);
   std::vector<Built> build_all(const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer);
-  void read_material(const Block& block, Modifiers& modifiers);
+  void read_material(const Block& block, const std::shared_ptr<const Block>& default_texture,
+                     Modifiers& modifiers);
   void add_moves(Node object, const Moves& moves, const Place& where);
   void extend_transform(Node object, const Moves& moves);
   /// The object, moved, as seen only through what `bounded_by` names.
@@ -77,6 +79,7 @@ class ObjectWriter {
   Built finish(const Block& block, const Modifiers& m, const Outer& outer, Built built, bool moved);
 
   Built combine(const Place& where, std::string_view op, std::vector<Built> parts);
+  Built surfaces_of(const Place& where, const Built& built);
   Node list_node(const Place& where, std::string_view key, const std::vector<Node>& items);
 
   void count_uses(const std::shared_ptr<const Block>& block);

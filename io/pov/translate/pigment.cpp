@@ -145,7 +145,7 @@ class PigmentReader {
     const std::string_view k = block.keyword;
     if (k == "pigment" || k == "texture" || k == "density") {
       if (p.pattern.is_list)
-        p.entries.push_back(nested(block));
+        p.entries.push_back(nested(block)), p.lists_pigments = true;
       else
         read(block, p);
     } else if (k == "color_map" || k == "colour_map" || k == "pigment_map" || k == "texture_map" ||
@@ -410,7 +410,9 @@ std::vector<PigmentEntry> entries_of(const Pigment& p) {
   std::vector<PigmentEntry> list = p.entries;
   const std::vector<PovColor> usual = default_colors(p.pattern);
   list.resize(std::min(list.size(), usual.size()));
-  for (std::size_t i = list.size(); i < usual.size(); ++i) list.push_back({0, usual[i], nullptr});
+  // Behind pigments black follows, behind colours what is usual.
+  for (std::size_t i = list.size(); i < usual.size(); ++i)
+    list.push_back({0, p.lists_pigments ? PovColor{} : usual[i], nullptr});
   return list;
 }
 

@@ -25,6 +25,7 @@ struct Pigment {
   PovColor solid;
   PovPattern pattern;                       ///< none: one colour
   std::vector<PigmentEntry> entries;        ///< of a map, by ascending places, or of a list
+  bool lists_pigments = false;              ///< the entries of a list are pigments, not colours
   bool is_average = false;                  ///< the mean of the entries, whose `at` are weights
   double filter_all = 0, transmit_all = 0;  ///< of an image
   std::string name;

@@ -24,13 +24,14 @@ namespace {
 
 class ShapeMaker {
  public:
-  ShapeMaker(Context& context, Arguments& a, const ShapeLimits& limits, bool operand)
+  ShapeMaker(Context& context, Arguments& a, const ShapeLimits& limits, const ShapeUse& use)
       : context_(context),
         tree_(context.tree),
         a_(a),
         where_(a.block().where),
         limits_(limits),
-        operand_(operand) {}
+        closes_(use.operand),
+        operand_(use.operand || use.clipped) {}
 
   std::optional<Shapes> make() {
     const std::string_view k = a_.block().keyword;
@@ -90,7 +91,7 @@ class ShapeMaker {
   /// `open` has no inside; where one is needed, the solid stands for it.
   bool is_open() {
     if (!has_word(a_.block(), "open")) return false;
-    if (!operand_) return true;
+    if (!closes_) return true;
     context_.tell("open operand", where_, "in combinations objects that are 'open' are closed");
     return false;
   }
@@ -109,6 +110,18 @@ class ShapeMaker {
   Shapes box() {
     const Vec3d p = a_.vector("a corner"), q = a_.vector("a corner");
     const Node keys = map();
+    int flat = 0, across = 0;
+    for (int k = 0; k < 3; ++k)
+      if (p[k] == q[k]) ++flat, across = k;
+    if (flat == 1) {
+      // A box without thickness is seen, too.
+      Vec3d a = p, b = q;
+      a[(across + 1) % 3] = q[(across + 1) % 3], b[(across + 1) % 3] = p[(across + 1) % 3];
+      const Node corners = tree_.list(where_);
+      for (const Vec3d& corner : {p, a, q, b}) Tree::push(corners, vector(corner));
+      tree_.put(keys, "vertices", corners);
+      return one("polygon", keys, false);
+    }
     tree_.put(keys, "min", vector(min(p, q))), tree_.put(keys, "max", vector(max(p, q)));
     return one("box", keys);
   }
@@ -258,7 +271,7 @@ class ShapeMaker {
     Shapes shapes;
     for (const std::vector<ProfilePoint>& piece : bezier_profiles(points, spline)) {
       const bool is_closed = piece.front().radius == 0 && piece.back().radius == 0;
-      const bool open = !is_closed && !operand_;
+      const bool open = !is_closed && !closes_;
       if (const std::string wrong = why_bad_profile({piece, open}); !wrong.empty()) {
         context_.warn(where_, fmt::format("this lathe is left out: {}", wrong));
         continue;
@@ -547,14 +560,15 @@ class ShapeMaker {
   Arguments& a_;
   Place where_;
   ShapeLimits limits_;
-  bool operand_;
+  bool closes_;   ///< what is open is closed
+  bool operand_;  ///< its inside counts
 };
 
 }  // namespace
 
 std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const ShapeLimits& limits,
-                                  bool operand) {
-  return ShapeMaker(context, arguments, limits, operand).make();
+                                  const ShapeUse& use) {
+  return ShapeMaker(context, arguments, limits, use).make();
 }
 
 }  // namespace oktett::pov

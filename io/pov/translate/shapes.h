@@ -36,9 +36,15 @@ struct ShapeLimits {
   bool are_windows = false;  ///< what it names can be looked through: shapes with an inside
 };
 
-/// Reads the arguments of an object up to its modifiers. `operand`: its inside is needed. Nothing, after a
-/// warning, if scene files have no such shape.
+/// What becomes of a shape.
+struct ShapeUse {
+  bool operand = false;  ///< of a combination, in which its inside counts
+  bool clipped = false;  ///< its surface is cut
+};
+
+/// Reads the arguments of an object up to its modifiers. Nothing, after a warning, if scene files have no
+/// such shape.
 std::optional<Shapes> make_shapes(Context& context, Arguments& arguments, const ShapeLimits& limits,
-                                  bool operand);
+                                  const ShapeUse& use);
 
 }  // namespace oktett::pov

@@ -1,6 +1,8 @@
 #include "io/pov/translate/texture.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace oktett::pov {
 
@@ -32,6 +34,12 @@ void Look::lay(const UvLayout& uv) {
   for (TextureEntry& entry : entries) entry.look.lay(uv);
 }
 
+static void use_uv(Look& look) {
+  look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = look.pattern.uses_uv = true;
+  for (Look& layer : look.layers) use_uv(layer);
+  for (TextureEntry& entry : look.entries) use_uv(entry.look);
+}
+
 namespace {
 
 /// Reads textures.
@@ -44,6 +52,12 @@ class TextureReader {
   void read(const Block& block, Look& look) {
     if (block.keyword == "pigment") return read_part(block, look);
     if (block.keyword == "finish" || block.keyword == "normal") return read_part(block, look);
+    if (block.keyword == "texture") {
+      const std::string name = std::move(look.name);
+      look = Look{};
+      if (block.default_texture != nullptr) read(*block.default_texture, look);
+      look.name = name;
+    }
     if (!block.name.empty() && look.name.empty()) look.name = block.name;
     const Look base = look;
     const std::size_t textures = count_textures(block);
@@ -75,6 +89,7 @@ class TextureReader {
     }
     if (pattern.uses_uv && pattern.is_none()) use_uv(look);
     if (pattern.is_none() || entries.empty()) return;
+    while (pattern.is_list && entries.size() < default_colors(pattern).size()) entries.push_back({});
     if (!pattern.is_list && pattern.word != "average")
       std::ranges::stable_sort(entries, {}, &TextureEntry::at);
     look.pattern = std::move(pattern), look.entries = std::move(entries), look.layers.clear();
@@ -85,12 +100,6 @@ class TextureReader {
     constexpr std::string_view kParts[] = {"texture", "material",    "pigment",     "finish",
                                            "normal",  "texture_map", "material_map"};
     return std::ranges::find(kParts, block.keyword) != std::end(kParts);
-  }
-
-  static void use_uv(Look& look) {
-    look.pigment.pattern.uses_uv = look.normal.pattern.uses_uv = look.pattern.uses_uv = true;
-    for (Look& layer : look.layers) use_uv(layer);
-    for (TextureEntry& entry : look.entries) use_uv(entry.look);
   }
 
   void read_part(const Block& block, Look& look) {
@@ -192,5 +201,58 @@ class TextureReader {
 }  // namespace
 
 void read_look(Context& context, const Block& block, Look& look) { TextureReader(context).read(block, look); }
+
+static Look default_look(Context& context, const std::shared_ptr<const Block>& default_texture) {
+  Look look;
+  if (default_texture != nullptr) read_look(context, *default_texture, look);
+  look.name.clear();
+  return look;
+}
+
+static void put_over(Look& look, Look layer) {
+  if (look.layers.empty()) {
+    std::vector<Look> lowest{std::move(look)};
+    look = Look{}, look.layers = std::move(lowest);
+  }
+  if (layer.layers.empty())
+    look.layers.push_back(std::move(layer));
+  else
+    std::ranges::move(layer.layers, std::back_inserter(look.layers));
+}
+
+Look look_of(Context& context, const std::vector<LookItem>& items,
+             const std::shared_ptr<const Block>& default_texture) {
+  Look look = default_look(context, items.empty() ? default_texture : items[0].default_texture);
+  bool is_first = true;
+  for (const LookItem& item : items) {
+    const std::string_view k = item.block->keyword;
+    Look own;
+    read_look(context, *item.block, own);
+    if (item.by_uv) use_uv(own);
+    Moves moves;
+    if (item.to_texture.is_invertible() && !(item.to_texture == Affine{}))
+      moves.add({Move::Kind::matrix, {}, item.to_texture.inverse(), {}});
+    own.move_in_space(moves);
+    if (k == "texture") {
+      if (is_first)
+        look = std::move(own);
+      else
+        put_over(look, std::move(own));
+    } else {
+      // Of textures in a pattern all are changed.
+      Look& top = look.layers.empty() ? look : look.layers.back();
+      if (!top.is_plain())
+        read_look(context, *item.block, top);
+      else if (k == "pigment")
+        top.pigment = std::move(own.pigment);
+      else if (k == "normal")
+        top.normal = std::move(own.normal);
+      else
+        read_look(context, *item.block, top);
+    }
+    is_first = false;
+  }
+  return look;
+}
 
 }  // namespace oktett::pov

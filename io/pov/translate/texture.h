@@ -1,6 +1,7 @@
 #pragma once
 /// \file Textures of POV-Ray: pigment, normal and finish, in patterns and layers. Within io/ only.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,23 @@ struct TextureEntry {
   Look look;
 };
 
-/// Reads a block `texture`, `pigment`, `normal` or `finish` on top of what is known of a look.
+/// Reads a block `texture`, which begins with the default where it stands, or `pigment`, `normal` or `finish`
+/// on top of what is known of a look.
 void read_look(Context& context, const Block& block, Look& look);
+
+/// A block `texture`, `pigment`, `normal` or `finish` of an object.
+struct LookItem {
+  std::shared_ptr<const Block> block;
+  std::shared_ptr<const Block>
+      default_texture;  ///< of #default where the object stands; null: the program's own
+  Affine to_texture;    ///< from the space of the object before its transforms to that of the block
+  bool by_uv = false;   ///< the object says `uv_mapping` before it
+};
+
+/// What an object's blocks make of it, one after the other: a texture lies over those before it, the others
+/// change the uppermost one. Without any it is the default.
+Look look_of(Context& context, const std::vector<LookItem>& items,
+             const std::shared_ptr<const Block>& default_texture);
 
 /// Calls f(plain look) for each that is shown somewhere.
 template <class F>

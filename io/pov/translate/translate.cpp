@@ -19,11 +19,14 @@ const Block* block_of(const Element& statement) {
   return block != nullptr ? block->get() : nullptr;
 }
 
-/// The gamma in which the scene's colours are meant and its light is computed. Scenes of before 3.7 that
-/// state none show their numbers as they are, which screens then decode.
-double gamma_of(const Document& document) {
-  constexpr double kScreen = 2.2;
-  double gamma = document.version < 3.7 ? kScreen : 1;
+/// How the numbers of a scene's colours are meant, in which its light is computed.
+struct SceneGamma {
+  double power = 1;     ///< light is shown raised to it
+  bool is_raw = false;  ///< instead the file holds the numbers, as in scenes of before 3.7 that state none
+};
+
+SceneGamma gamma_of(const Document& document) {
+  SceneGamma gamma{1, document.version < 3.7};
   for (const Element& statement : document.statements) {
     const Block* const block = block_of(statement);
     if (block == nullptr || block->keyword != "global_settings") continue;
@@ -31,13 +34,19 @@ double gamma_of(const Document& document) {
       const auto* const word = std::get_if<Word>(&block->elements[i].value);
       if (word == nullptr || word->text != "assumed_gamma") continue;
       if (const auto* const number = std::get_if<Numbers>(&block->elements[i + 1].value))
-        gamma = number->v[0];
+        gamma = {std::isfinite(number->v[0]) ? std::clamp(number->v[0], 0.1, 10.0) : 1, false};
       if (const auto* const name = std::get_if<Word>(&block->elements[i + 1].value);
           name && name->text == "srgb")
-        gamma = kScreen;
+        gamma = {1, true};
     }
   }
-  return std::isfinite(gamma) ? std::clamp(gamma, 0.1, 10.0) : 1;
+  return gamma;
+}
+
+void set_gamma(Context& context) {
+  const SceneGamma gamma = gamma_of(context.document);
+  context.gamma = gamma.power, context.encoded = gamma.is_raw || gamma.power > 1.6;
+  context.raw = gamma.is_raw;
 }
 
 /// Statements that stand for themselves.
@@ -49,7 +58,7 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
   if (k == "global_settings") return read_global_settings(context, *block, s);
   if (k == "background") return read_background(context, *block, s);
   if (k == "sky_sphere") {
-    if (const Node sky = sky_node(context, *block)) s.sky = sky;
+    s.sky = block;
     return;
   }
   if (k == "fog") {
@@ -119,7 +128,7 @@ TranslatedObject translate_object(const Document& document, const std::shared_pt
 TranslatedScene translate_look(const Document& document, const std::shared_ptr<const Block>& look) {
   Context context(document);
   begin_sections(context);
-  context.gamma = gamma_of(document);
+  set_gamma(context);
   auto sphere = std::make_shared<Block>();
   sphere->keyword = "sphere", sphere->where = look->where;
   sphere->elements = {
@@ -135,7 +144,7 @@ TranslatedScene translate_look(const Document& document, const std::shared_ptr<c
 TranslatedScene translate(const Document& document, const TranslateOptions& options) {
   Context context(document);
   context.warnings = document.warnings;
-  context.gamma = gamma_of(document);
+  set_gamma(context);
   context.mesh_prefix = options.mesh_prefix, context.queries = options.queries;
   Tree& tree = context.tree;
   const Place top;
@@ -161,6 +170,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(film, "width", tree.number(top, options.width)),
       tree.put(film, "height", tree.number(top, options.height));
   if (context.gamma != 1) tree.put(film, "gamma", tree.number(top, context.gamma));
+  if (context.raw) tree.put(film, "tone", tree.word(top, "raw"));
   tree.put(root, "film", film);
   const Node integrator = tree.map(s.settings_place);
   tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
@@ -170,7 +180,8 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   tree.put(integrator, "cutoff", tree.number(s.settings_place, std::clamp(s.adc_bailout, 0.0, 1.0)));
   if (context.samples > 0) tree.put(integrator, "samples", tree.number(top, context.samples));
   tree.put(root, "integrator", integrator);
-  tree.put(root, "background", s.sky != nullptr ? s.sky : color_node(tree, s.background_place, s.background));
+  const Node sky = s.sky != nullptr ? sky_node(context, *s.sky, s.background) : nullptr;
+  tree.put(root, "background", sky != nullptr ? sky : color_node(tree, s.background_place, s.background));
   if (!(s.ambient == Vec3d{1, 1, 1}))
     tree.put(root, "ambient_light", color_node(tree, s.settings_place, s.ambient));
   if (s.fogs != nullptr) tree.put(root, "fog", s.fogs);

@@ -154,9 +154,13 @@ Node camera_node(Context& context, const Block* block) {
   PovCamera c;
   Place where;
   if (block != nullptr) read_camera(context, *block, c), where = block->where;
-  if (c.angle && c.kind == "perspective") {
-    if (!(*c.angle > 0 && *c.angle < 180))
+  if (c.angle && !c.curved()) {
+    if (!(*c.angle >= 0 && *c.angle < 180))
       context.fail(where, fmt::format("a camera of {} degrees cannot be meant", *c.angle));
+    // One of 0 is none.
+    if (*c.angle == 0) c.angle.reset();
+  }
+  if (c.angle && c.kind == "perspective") {
     const double size = length(c.direction);
     if (size > 0)
       c.direction = c.direction / size * (length(c.right) / 2 / std::tan(*c.angle / 2 * kRadians));
@@ -213,7 +217,12 @@ struct PovLight {
   std::optional<double> radius, falloff;
   double tightness = 0, fade_distance = 0, fade_power = 0;
   std::array<LightPoints, 2> area;
-  Moves moves;
+  /// Of the place, the point, the sides and the body: only what is said behind each of them moves it.
+  Moves moves, point_moves, area_moves, body_moves;
+
+  void move(const Moves& more) {
+    for (Moves* const all : {&moves, &point_moves, &area_moves, &body_moves}) all->add(more);
+  }
 };
 
 /// The most points along a side: more make pictures slow and hardly other.
@@ -237,7 +246,10 @@ void read_area(Context& context, Arguments& l, PovLight& light) {
 void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body) {
   while (!l.at_end()) {
     const Place at = l.where();
-    if (take_moves(context, l, light.moves)) continue;
+    if (Moves moves; take_moves(context, l, moves)) {
+      light.move(moves);
+      continue;
+    }
     if (const std::shared_ptr<const Block> inner = l.peek_shared_block()) {
       l.take();
       if (inner->keyword == "light_source") {
@@ -247,8 +259,11 @@ void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body
       } else if (inner->keyword == "looks_like" || inner->keyword == "projected_through") {
         for (const Element& e : inner->elements)
           if (const auto* const object = std::get_if<std::shared_ptr<const Block>>(&e.value);
-              object != nullptr && inner->keyword == "looks_like")
+              object != nullptr && inner->keyword == "looks_like") {
             body.object = *object;
+            light.body_moves = {};
+            light.body_moves.add({Move::Kind::translate, light.moves.all.point(light.location), {}, at});
+          }
         if (inner->keyword != "looks_like")
           context.tell("projected_through", at, "'projected_through' has no meaning here");
       } else if (inner->keyword != "photons") {
@@ -262,7 +277,7 @@ void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body
     } else if (l.take_word("parallel")) {
       light.parallel = true;
     } else if (l.take_word("point_at")) {
-      light.point_at = l.vector("a point");
+      light.point_at = l.vector("a point"), light.point_moves = {};
     } else if (l.take_word("radius")) {
       light.radius = l.number("an angle");
     } else if (l.take_word("falloff")) {
@@ -276,7 +291,7 @@ void read_light(Context& context, Arguments& l, PovLight& light, LightBody& body
     } else if (l.take_word("shadowless")) {
       light.shadowless = l.flag();
     } else if (l.take_word("area_light")) {
-      read_area(context, l, light);
+      read_area(context, l, light), light.area_moves = {};
     } else if (l.take_word("circular")) {
       light.circular = l.flag();
     } else if (l.is_numbers()) {
@@ -345,8 +360,9 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
   LightBody body;
   if (a.peek_block() == nullptr) light.location = a.vector("a place"), light.color = a.color("a colour");
   read_light(context, a, light, body);
-  const Affine all = to_world * light.moves.all;
-  const Vec3d middle = all.point(light.location), target = all.point(light.point_at);
+  const Affine of_sides = to_world * light.area_moves.all;
+  const Vec3d middle = to_world.point(light.moves.all.point(light.location)),
+              target = to_world.point(light.point_moves.all.point(light.point_at));
   const Vec3d way = target - middle;
   const Vec3d rgb = light.color.rgb;
   if (std::min({rgb.x, rgb.y, rgb.z}) < 0)
@@ -355,8 +371,8 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
   for (int i = 0; i < light.area[0].count; ++i)
     for (int k = 0; k < light.area[1].count; ++k) {
       const std::array<double, 2> place = light_place(light, i, k);
-      const Vec3d at =
-          middle + all.vector(light.area[0].side) * place[0] + all.vector(light.area[1].side) * place[1];
+      const Vec3d at = middle + of_sides.vector(light.area[0].side) * place[0] +
+                       of_sides.vector(light.area[1].side) * place[1];
       const double part = light_part(i, light.area[0].count) * light_part(k, light.area[1].count);
       const Node keys = tree.map(where);
       const char* kind = "point";
@@ -385,10 +401,7 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
       put_light(tree, where, light, keys);
       Tree::push(context.lights, tree.map(where, kind, keys));
     }
-  if (body.object) {
-    body.moves.add({Move::Kind::translate, light.location, {}, where});
-    body.moves.add(light.moves);
-  }
+  body.moves = light.body_moves;
   return body;
 }
 
@@ -426,9 +439,11 @@ void read_global_settings(Context& context, const Block& block, Surroundings& s)
 void read_background(Context& context, const Block& block, Surroundings& s) {
   Arguments a(context, block);
   while (!a.at_end()) {
-    if (a.is_numbers())
-      s.background = a.color("a colour").rgb, s.background_place = block.where;
-    else if (const Block* const inner = a.peek_block(); inner != nullptr && inner->keyword == "background")
+    if (a.is_numbers()) {
+      const PovColor color = a.color("a colour");
+      // Nothing lies behind what it lets pass.
+      s.background = color.rgb * (1 - std::clamp(color.transmit, 0.0, 1.0)), s.background_place = block.where;
+    } else if (const Block* const inner = a.peek_block(); inner != nullptr && inner->keyword == "background")
       read_background(context, *inner, s), a.take();
     else
       a.take();

@@ -22,10 +22,10 @@ struct Surroundings {
   double max_trace_level = 5, adc_bailout = 1 / 255.0;
   Vec3d ambient{1, 1, 1};
   Vec3d background{0, 0, 0};
-  Node sky = nullptr;       ///< instead, if there is one
-  Node fogs = nullptr;      ///< a list, if there are some
-  Node rainbows = nullptr;  ///< likewise
-  Interior interior;        ///< what else fills the space outside of solids
+  std::shared_ptr<const Block> sky;  ///< the last sky_sphere; or null
+  Node fogs = nullptr;               ///< a list, if there are some
+  Node rainbows = nullptr;           ///< likewise
+  Interior interior;                 ///< what else fills the space outside of solids
   Place background_place{}, settings_place{};
 };
 void read_global_settings(Context& context, const Block& block, Surroundings& surroundings);
