@@ -27,11 +27,12 @@ std::string scene_of(const std::string& text) {
 /// What is seen of an object from the side.
 std::vector<float> picture_of(const std::string& text) {
   const TempDir dir;
-  Scene scene = load_scene(dir.write("scene.pov",
-                                     "#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb 0.3 }\n"
-                                     "camera { location <7, 9, -14> look_at 0 angle 30 }\n"
-                                     "light_source { <9, 9, -9>, 1 }\n" +
-                                         text));
+  Scene scene =
+      load_scene(dir.write("scene.pov",
+                           "#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb 0.3 }\n"
+                           "camera { location <7, 9, -14> look_at 0 angle 30 }\n"
+                           "light_source { <9, 9, -9>, 1 }\n" +
+                               text));
   scene.film.width = scene.film.height = 24, scene.integrator.samples = 1;
   const Picture picture = render(scene, {}).picture;
   std::vector<float> all;
@@ -52,9 +53,11 @@ void expect_same_picture(const std::string& text, const std::string& means) {
 
 /// The colour of the middle of a picture that looks along z. What was seen by running POV-Ray 3.7.0.10 stands
 /// in the tests below.
-Vec3f middle(const std::string& text, const std::string& version = "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n") {
+Vec3f middle(const std::string& text,
+             const std::string& version = "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n") {
   const TempDir dir;
-  Scene scene = load_scene(dir.write("scene.pov", version + "camera { location -9*z look_at 0 angle 1 }\n" + text));
+  Scene scene =
+      load_scene(dir.write("scene.pov", version + "camera { location -9*z look_at 0 angle 1 }\n" + text));
   scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
   const Picture picture = render(scene, {}).picture;
   Vec3f color;
@@ -83,13 +86,17 @@ TEST(PovModifiers, ACopyGoesOn) {
   means("scale 3 pigment { gradient y } translate x");
   means("interior { ior 1.5 }");
   expect_same({
-      {"object { object { sphere { 0, 1 pigment { rgb x } } } pigment { rgb y } }", "sphere { 0, 1 pigment { rgb y } }"},
-      {"#declare B = union { sphere { 0, 1 } sphere { x, 1 } pigment { rgb x } } object { B pigment { rgb y } }",
+      {"object { object { sphere { 0, 1 pigment { rgb x } } } pigment { rgb y } }",
+       "sphere { 0, 1 pigment { rgb y } }"},
+      {"#declare B = union { sphere { 0, 1 } sphere { x, 1 } pigment { rgb x } } object { B pigment { rgb y "
+       "} }",
        "union { sphere { 0, 1 } sphere { x, 1 } pigment { rgb y } }"},
       // Parts of it keep theirs.
-      {"#declare B = union { sphere { 0, 1 pigment { rgb x } } sphere { x, 1 } } object { B pigment { rgb y } }",
+      {"#declare B = union { sphere { 0, 1 pigment { rgb x } } sphere { x, 1 } } object { B pigment { rgb y "
+       "} }",
        "union { sphere { 0, 1 pigment { rgb x } } sphere { x, 1 } pigment { rgb y } }"},
-      {"#declare B = sphere { 0, 1 pigment { rgb x } } union { object { B } sphere { x, 1 } pigment { rgb y } }",
+      {"#declare B = sphere { 0, 1 pigment { rgb x } } union { object { B } sphere { x, 1 } pigment { rgb y "
+       "} }",
        "union { sphere { 0, 1 pigment { rgb x } } sphere { x, 1 } pigment { rgb y } }"},
   });
 }
@@ -107,15 +114,18 @@ TEST(PovModifiers, ItemsOfALookFollowEachOther) {
        "union { sphere { 0, 1 } pigment { gradient y } finish { ambient 0.5 } scale 3 }"},
       {"box { -1, 1 material { texture { pigment { gradient y } } scale 3 } }",
        "box { -1, 1 texture { pigment { gradient y } scale 3 } }"},
-      {"#declare M = material { texture { pigment { gradient y } } }\nbox { -1, 1 material { M scale 3 } scale 2 }",
+      {"#declare M = material { texture { pigment { gradient y } } }\nbox { -1, 1 material { M scale 3 } "
+       "scale 2 }",
        "box { -1, 1 texture { pigment { gradient y } scale 3 } scale 2 }"},
-      {"box { -1, 1 pigment { checker pigment { rgb y } } }", "box { -1, 1 pigment { checker rgb y, rgb 0 } }"},
+      {"box { -1, 1 pigment { checker pigment { rgb y } } }",
+       "box { -1, 1 pigment { checker rgb y, rgb 0 } }"},
   });
 }
 
 TEST(PovModifiers, TexturesBeginWithTheDefaultWhereTheyStand) {
   expect_same({
-      {"#declare T = texture { pigment { rgb 1 } } #default { finish { ambient 0.9 } } sphere { 0, 1 texture { T } }",
+      {"#declare T = texture { pigment { rgb 1 } } #default { finish { ambient 0.9 } } sphere { 0, 1 texture "
+       "{ T } }",
        "sphere { 0, 1 texture { pigment { rgb 1 } } }"},
       {"#declare B = sphere { 0, 1 pigment { rgb 1 } } #default { finish { ambient 0.9 } } object { B }",
        "sphere { 0, 1 pigment { rgb 1 } }"},
@@ -132,26 +142,30 @@ TEST(PovModifiers, TexturesBeginWithTheDefaultWhereTheyStand) {
 // Only what is said behind the point moves it.
 TEST(PovModifiers, LightsKeepWhatIsSetLater) {
   for (const Same& c : std::vector<Same>{
-      {"light_source { 0 rgb 1 spotlight translate <0, 4, -3> point_at 0 }",
-       "light_source { <0, 4, -3> rgb 1 spotlight point_at 0 }"},
-      {"light_source { 0 rgb 1 spotlight point_at 0 translate <0, 4, -3> }",
-       "light_source { <0, 4, -3> rgb 1 spotlight point_at <0, 4, -3> }"},
-      {"light_source { 0 rgb 1 rotate 90*z area_light x, z, 2, 2 translate y }",
-       "light_source { y rgb 1 area_light x, z, 2, 2 }"},
-  })
+           {"light_source { 0 rgb 1 spotlight translate <0, 4, -3> point_at 0 }",
+            "light_source { <0, 4, -3> rgb 1 spotlight point_at 0 }"},
+           {"light_source { 0 rgb 1 spotlight point_at 0 translate <0, 4, -3> }",
+            "light_source { <0, 4, -3> rgb 1 spotlight point_at <0, 4, -3> }"},
+           {"light_source { 0 rgb 1 rotate 90*z area_light x, z, 2, 2 translate y }",
+            "light_source { y rgb 1 area_light x, z, 2, 2 }"},
+       })
     EXPECT_EQ(scene_of(c.text), scene_of(c.means)) << c.text;
 }
 
 TEST(PovModifiers, BackgroundsLetLightPass) {
   EXPECT_EQ(middle("background { rgb <1, 0.5, 0.25> transmit 0.5 }"), (Vec3f{0.5f, 0.25f, 0.125f}));
   EXPECT_EQ(middle("background { rgb <1, 0.5, 0.25> filter 0.5 }"), (Vec3f{1, 0.5f, 0.25f}));
-  EXPECT_EQ(middle("sky_sphere { pigment { rgbt <1, 1, 1, 0.5> } } background { rgb z }"), (Vec3f{0.5f, 0.5f, 1}));
+  EXPECT_EQ(middle("background { rgb <1, 0.5, 0.25> transmit 0.5 }", "#version 3.6;\n"),
+            (Vec3f{1, 0.5f, 0.25f}));
+  EXPECT_EQ(middle("sky_sphere { pigment { rgbt <1, 1, 1, 0.5> } } background { rgb z }"),
+            (Vec3f{0.5f, 0.5f, 1}));
 }
 
 // What neither bends nor colours light is no level of reflections and refractions.
 TEST(PovModifiers, LightPassesManyClearSurfaces) {
-  const std::string boxes = "background { rgb 1 } #for (i, 0, 40) box { <-1, -1, i>, <1, 1, i + 0.01> "
-                            "pigment { rgbt 1 } finish { ambient 0 diffuse 0 } ";
+  const std::string boxes =
+      "background { rgb 1 } #for (i, 0, 40) box { <-1, -1, i>, <1, 1, i + 0.01> "
+      "pigment { rgbt 1 } finish { ambient 0 diffuse 0 } ";
   EXPECT_EQ(middle(boxes + "} #end"), (Vec3f{1, 1, 1}));
   EXPECT_EQ(middle(boxes + "interior { ior 1.3 } } #end"), (Vec3f{0, 0, 0}));
 }
@@ -160,7 +174,8 @@ TEST(PovModifiers, FlatBoxesAreSeen) {
   const std::string look = " pigment { rgb x } finish { ambient 1 diffuse 0 } ";
   EXPECT_EQ(middle("box { <-1, -1, 0>, <1, 1, 0>" + look + "}"), (Vec3f{1, 0, 0}));
   EXPECT_EQ(middle("box { <-1, 0, -1>, <1, 0, 1>" + look + "rotate 90*x }"), (Vec3f{1, 0, 0}));
-  EXPECT_EQ(middle("difference { sphere { 0, 1" + look + "} box { <-1, -1, 0>, <1, 1, 0> } }"), (Vec3f{1, 0, 0}));
+  EXPECT_EQ(middle("difference { sphere { 0, 1" + look + "} box { <-1, -1, 0>, <1, 1, 0> } }"),
+            (Vec3f{1, 0, 0}));
 }
 
 // Scenes of before 3.7 that state no gamma, or no version at all, name the numbers of the file.

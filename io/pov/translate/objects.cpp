@@ -177,15 +177,18 @@ ObjectWriter::Maybe ObjectWriter::build_instance(const std::shared_ptr<const Blo
   return Built{node, prototype.solid, false};
 }
 
-/// Whether an object, or the one that it is a copy of, has a texture or a part of one.
+/// Whether an object, or the only one that it is a copy of, has a texture or a part of one.
 static bool has_own_look(const Block& block) {
-  return std::ranges::any_of(block.elements, [&](const Element& e) {
+  constexpr std::array<std::string_view, 5> kLooks{"texture", "pigment", "finish", "normal", "material"};
+  const Block* only = nullptr;
+  std::size_t objects = 0;
+  for (const Element& e : block.elements) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
-    if (inner == nullptr || *inner == nullptr) return false;
-    constexpr std::array<std::string_view, 5> kLooks{"texture", "pigment", "finish", "normal", "material"};
-    return std::ranges::find(kLooks, (*inner)->keyword) != kLooks.end() ||
-           (block.keyword == "object" && is_object((*inner)->keyword) && has_own_look(**inner));
-  });
+    if (inner == nullptr || *inner == nullptr) continue;
+    if (std::ranges::find(kLooks, (*inner)->keyword) != kLooks.end()) return true;
+    if (is_object((*inner)->keyword)) only = inner->get(), ++objects;
+  }
+  return block.keyword == "object" && objects == 1 && has_own_look(*only);
 }
 
 /// What stands behind an object in a block `object` goes on with it.

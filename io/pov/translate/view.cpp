@@ -441,8 +441,9 @@ void read_background(Context& context, const Block& block, Surroundings& s) {
   while (!a.at_end()) {
     if (a.is_numbers()) {
       const PovColor color = a.color("a colour");
-      // Nothing lies behind what it lets pass.
-      s.background = color.rgb * (1 - std::clamp(color.transmit, 0.0, 1.0)), s.background_place = block.where;
+      // Nothing lies behind what it lets pass, since 3.7.
+      const double left = context.document.version < 3.7 ? 1 : 1 - std::clamp(color.transmit, 0.0, 1.0);
+      s.background = color.rgb * left, s.background_place = block.where;
     } else if (const Block* const inner = a.peek_block(); inner != nullptr && inner->keyword == "background")
       read_background(context, *inner, s), a.take();
     else
