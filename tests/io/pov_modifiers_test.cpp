@@ -101,6 +101,15 @@ TEST(PovModifiers, ACopyGoesOn) {
   });
 }
 
+// What bounds a copy bounds what has no end.
+TEST(PovModifiers, CopiesAreBounded) {
+  const std::string whole = scene_of(
+      "#declare S = quartic { <0,0,0,0,0,0,0,0,0,0,0,1,0,0,1,0,0,0,1,0,0,0,0,0,0,0,1,"
+      "0,0,0,0,0,0,0,0> }\nobject { S pigment { rgb x } scale 2 bounded_by { sphere { 0, 2 } } }");
+  EXPECT_NE(whole.find("max: [1.02"), std::string::npos) << whole;
+  EXPECT_EQ(whole.find("seen_through"), std::string::npos) << whole;
+}
+
 // Each item of a look feels the transforms behind it, and no other part of the look changes.
 TEST(PovModifiers, ItemsOfALookFollowEachOther) {
   expect_same({

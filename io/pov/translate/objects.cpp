@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "io/pov/translate/shapes.h"
@@ -191,10 +192,13 @@ static bool has_own_look(const Block& block) {
   return block.keyword == "object" && objects == 1 && has_own_look(*only);
 }
 
-/// What stands behind an object in a block `object` goes on with it.
+/// What stands behind an object in a block `object` goes on with it, but for what bounds it.
 static Block continued(const Block& object, const Block& behind) {
   Block whole = object;
-  whole.elements.insert(whole.elements.end(), behind.elements.begin(), behind.elements.end());
+  std::ranges::copy_if(behind.elements, std::back_inserter(whole.elements), [](const Element& e) {
+    const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+    return inner == nullptr || *inner == nullptr || (*inner)->keyword != "bounded_by";
+  });
   if (!has_own_look(object)) whole.default_texture = behind.default_texture;
   return whole;
 }
@@ -225,8 +229,11 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
     return std::nullopt;
   }
   if (k == "object" && children.size() == 1 && children[0]->keyword != "light_source" && m.changes_look() &&
-      !hidden_ && !asked_)
-    return build_object(continued(*children[0], rest), outer);
+      !hidden_ && !asked_) {
+    Outer around = outer;
+    around.within = outer.within.meet(limits_of(context_, block, "bounded_by").moved(m.moves.all));
+    return build_object(continued(*children[0], rest), around);
+  }
   return build_children(block, children, m, outer);
 }
 
