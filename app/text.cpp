@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/yaml/utf8.h"
+
 namespace oktett {
 
 static std::string three_digits(double value) {
@@ -45,31 +47,18 @@ double parse_amount(std::string_view option, std::string_view text, std::string_
 }
 
 std::string printable(std::string_view text) {
-  const auto byte = [&](std::size_t at) {
-    return static_cast<unsigned char>(at < text.size() ? text[at] : 0);
-  };
-  // The bytes of the character of UTF-8 at `at`; 0 if it is none.
-  const auto length = [&](std::size_t at) -> std::size_t {
-    const unsigned char first = byte(at);
-    const std::size_t size = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    for (std::size_t k = 1; k < size; ++k)
-      if ((byte(at + k) & 0xc0) != 0x80) return 0;
-    return first < 0xf5 ? size : 0;
-  };
   std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t size = length(i);
+  for (std::size_t i = 0, size; i < text.size(); i += size) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[i + k]); };
+    const std::size_t length = character_length(text, i);
+    size = std::max<std::size_t>(length, 1);
     // U+0080 to U+009F are control characters, too.
-    const bool is_control = size == 1
-                                ? (byte(i) < 0x20 && byte(i) != '\n' && byte(i) != '\t') || byte(i) == 0x7f
-                            : size == 2 ? byte(i) == 0xc2 && byte(i + 1) < 0xa0
-                                        : size == 0;
-    if (is_control)
-      for (std::size_t k = 0; k < std::max<std::size_t>(size, 1); ++k)
-        out += fmt::format("\\x{:02x}", byte(i + k));
-    else
-      out += text.substr(i, size);
-    i += std::max<std::size_t>(size, 1);
+    const bool is_control = length == 1
+                                ? (byte(0) < 0x20 && byte(0) != '\n' && byte(0) != '\t') || byte(0) == 0x7f
+                            : length == 2 ? byte(0) == 0xc2 && byte(1) < 0xa0
+                                          : length == 0;
+    if (!is_control) out += text.substr(i, size);
+    for (std::size_t k = 0; is_control && k < size; ++k) out += fmt::format("\\x{:02x}", byte(k));
   }
   return out;
 }

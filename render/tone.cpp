@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/math.h"
+#include "core/mesh_attributes.h"
 
 namespace oktett {
 namespace {
@@ -41,12 +42,6 @@ Vec3d neutral(Vec3d c) {
   return c * (shown / peak) * (1 - white) + Vec3d{shown, shown, shown} * white;
 }
 
-/// What sRGB's curve encodes as v.
-double decoded(double v) {
-  if (v <= 0.04045) return v / 12.92;
-  return portable::exp2(2.4 * portable::log2((v + 0.055) / 1.055));
-}
-
 }  // namespace
 
 Color toned(const Tone& tone, const Color& c) {
@@ -60,7 +55,7 @@ Color toned(const Tone& tone, const Color& c) {
   const Vec3d seen{std::max(light.x, 0.0), std::max(light.y, 0.0), std::max(light.z, 0.0)};
   Vec3d shown;
   if (tone.kind == ToneKind::raw)
-    shown = {decoded(std::min(seen.x, 1.0)), decoded(std::min(seen.y, 1.0)), decoded(std::min(seen.z, 1.0))};
+    for (int k = 0; k < 3; ++k) shown[k] = double{linear_of_srgb(std::min(seen[k], 1.0))};
   else if (tone.kind == ToneKind::filmic)
     shown = {hable(seen.x), hable(seen.y), hable(seen.z)};
   else

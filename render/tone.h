@@ -12,7 +12,7 @@ enum class ToneKind {
   filmic,   ///< the curve of a film with a long shoulder (Hable 2010)
   aces,     ///< the reference rendering and sRGB output of the Academy, as fitted by Hill (2016)
   neutral,  ///< colours as they are up to 0.76, highlights compressed (Khronos 2024)
-  raw,      ///< the numbers are those that the file holds: sRGB's curve is undone beforehand
+  raw,      ///< files hold the numbers as they are, without the curve of sRGB
 };
 /// Their names.
 inline constexpr Choice<ToneKind> kToneKinds[] = {{"srgb", ToneKind::srgb},

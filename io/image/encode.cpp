@@ -71,30 +71,31 @@ bool is_power(const Tone& tone) {
   return tone.kind == ToneKind::srgb && tone.exposure == 0 && tone.gamma > 1 && tone.gamma <= 2.25;
 }
 
-FlatImage flatten_to_bytes(const Picture& picture, bool with_alpha) {
-  if (picture.tone.kind == ToneKind::raw && picture.tone.gamma == 1) {
-    const float factor = static_cast<float>(portable::exp2(picture.tone.exposure));
-    const auto byte = [&](float x) {
-      return static_cast<std::uint8_t>(std::clamp(x * factor, 0.0f, 1.0f) * 255 + 0.5f);
-    };
-    const auto shown = [&](const Color& light) -> std::array<std::uint8_t, 3> {
-      if (!is_finite(light))
-        return {linear_to_srgb8(light.x), linear_to_srgb8(light.y), linear_to_srgb8(light.z)};
-      return {byte(light.x), byte(light.y), byte(light.z)};
-    };
-    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown, 255);
-  }
-  if (!is_power(picture.tone))
-    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown_by(picture.tone, linear_to_srgb8),
-                           255);
-  const ByteTable<15> bytes([&](float x) { return linear_to_srgb8(toned(picture.tone, {x, x, x}).x); });
+/// Each number for itself.
+template <class ByteOf>
+FlatImage flatten_by(const Picture& picture, bool with_alpha, const ByteOf& byte) {
   const auto shown = [&](const Color& light) -> std::array<std::uint8_t, 3> {
     // A colour that is not finite has no tone.
     if (!is_finite(light))
       return {linear_to_srgb8(light.x), linear_to_srgb8(light.y), linear_to_srgb8(light.z)};
-    return {bytes(light.x), bytes(light.y), bytes(light.z)};
+    return {byte(light.x), byte(light.y), byte(light.z)};
   };
   return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown, 255);
+}
+
+FlatImage flatten_to_bytes(const Picture& picture, bool with_alpha) {
+  const Tone& tone = picture.tone;
+  if (tone.kind == ToneKind::raw && tone.gamma == 1) {
+    const float factor = static_cast<float>(portable::exp2(tone.exposure));
+    return flatten_by(picture, with_alpha, [&](float x) {
+      return static_cast<std::uint8_t>(std::clamp(x * factor, 0.0f, 1.0f) * 255 + 0.5f);
+    });
+  }
+  if (is_power(tone))
+    return flatten_by(picture, with_alpha, ByteTable<15>([&](float x) {
+                        return linear_to_srgb8(toned(tone, {x, x, x}).x);
+                      }));
+  return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, shown_by(tone, linear_to_srgb8), 255);
 }
 
 }  // namespace

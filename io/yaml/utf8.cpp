@@ -11,7 +11,10 @@ namespace {
 
 bool is_inside_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
-/// Length of the well-formed character at `text[i]` (Unicode 15, table 3-7); 0 if it is malformed.
+bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; }
+
+}  // namespace
+
 std::size_t character_length(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t k) {
     return static_cast<unsigned char>(i + k < text.size() ? text[i + k] : 0);
@@ -30,10 +33,6 @@ std::size_t character_length(std::string_view text, std::size_t i) {
   }
   return 0;
 }
-
-bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; }
-
-}  // namespace
 
 void check_text(std::string& text, const std::string& path) {
   text.erase(0, text.size() - without_byte_order_mark(text).size());

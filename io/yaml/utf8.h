@@ -1,5 +1,5 @@
 #pragma once
-/// \file Characters of UTF-8 text: validation, counting, shortening. Within io/ only.
+/// \file Characters of UTF-8 text: validation, counting, shortening.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,9 @@ namespace oktett {
 /// Removes a byte order mark from `text`. Throws Error with line and column, in characters, at the first byte
 /// that is not UTF-8 or is a control character other than tab, line feed and carriage return.
 void check_text(std::string& text, const std::string& path);
+
+/// Length of the well-formed character at `text[i]` (Unicode 15, table 3-7); 0 if it is malformed.
+std::size_t character_length(std::string_view text, std::size_t i);
 
 /// Number of characters (code points) in valid UTF-8; a truncated last character counts as one.
 std::size_t character_count(std::string_view text);
