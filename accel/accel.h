@@ -75,9 +75,9 @@ struct Geometry {
 /// A node of a Boolean expression: an operand, or a combination of other nodes. Spheres, boxes, planes (the
 /// half-space dot(normal, p) <= offset), closed meshes, exact surfaces that have an inside, and instances and
 /// combinations of these are solids. All other geometries have no inside and are left out, unless the operand
-/// is CsgOp::surfaces: of that, whatever it is, only surfaces count. A ray meets one where the whole holds
-/// nothing without it, but would if the ray were inside of it there: in an intersection as far as it is in
-/// all other operands, of the first operand of a difference what is in no other.
+/// is CsgOp::surfaces: then only their surfaces count. A ray meets one where it is outside of the whole, but
+/// would be inside if it were inside of that operand: of an intersection, where it is in all other operands;
+/// of the first operand of a difference, where it is in no other.
 struct CsgExpression {
   CsgOp op = CsgOp::operand;
   std::vector<Geometry> solids;         ///< of operands: it is their union

@@ -15,6 +15,8 @@ struct Event {
   float turn;  ///< 0: it is with CsgOp::surfaces
   std::uint32_t solid, geometry;
   std::uint32_t crossing;
+  bool shown =
+      false;  ///< of a surface: it is seen as the states are before those that coincide with it count
 };
 
 /// Which solids, operands and nodes the ray is inside of. end() resets only what was changed, so that a large
@@ -105,8 +107,7 @@ struct Begin {
 /// Memory for one ray's sweep, kept between rays.
 struct Scratch {
   std::vector<Event> events;
-  std::vector<Begin> begin;        ///< per solid; reset between rays
-  std::vector<std::size_t> shown;  ///< events with surfaces that are seen before those that coincide count
+  std::vector<Begin> begin;  ///< per solid; reset between rays
   States states;
 };
 
@@ -186,19 +187,15 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   std::span<const float> turns;
   if (csg.has_meshes) turns = solid_turns(solids, crossings);
   for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-    float turn = turns.empty() ? crossings[i].turn : turns[i];
-    if (turn == 0 && !csg.has_surfaces) continue;
+    const float turn = turns.empty() ? crossings[i].turn : turns[i];
     const Hit& hit = crossings[i].hit;
     const std::uint32_t item = hit.instance == kNoId ? hit.item : top_item(solids, hit.instance);
     const std::uint32_t geometry = solids.geometry_of(item);
-    if (csg.has_surfaces) {
-      const bool is_surface = csg.nodes[csg.operand_of[geometry]].op == CsgOp::surfaces;
-      if (is_surface ? !is_seen(csg, geometry, with_unseen) : turn == 0) continue;
-      if (is_surface) turn = 0;
-    }
+    const bool is_surface = csg.has_surfaces && csg.nodes[csg.operand_of[geometry]].op == CsgOp::surfaces;
+    if (is_surface ? !is_seen(csg, geometry, with_unseen) : turn == 0) continue;
     std::uint32_t solid = csg.first_solid[geometry];
     if (csg.first_solid[geometry + 1] > solid + 1) solid += item - solids.first_item[geometry];
-    s.events.push_back({hit.t, turn, solid, geometry, i});
+    s.events.push_back({hit.t, is_surface ? 0 : turn, solid, geometry, i});
   }
   if (s.events.empty()) return;
   std::sort(s.events.begin(), s.events.end(), [&](const Event& a, const Event& b) {
@@ -222,9 +219,8 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   bool inside = s.states.whole(), goes_on = true;
   for (std::size_t i = 0; goes_on && i < s.events.size();) {
     const std::size_t first = i, end = group_end(s.events, first, slack);
-    s.shown.clear();
     for (std::size_t k = first; csg.has_surfaces && k < end; ++k)
-      if (s.events[k].turn == 0 && s.states.shows(s.events[k].geometry)) s.shown.push_back(k);
+      s.events[k].shown = s.events[k].turn == 0 && s.states.shows(s.events[k].geometry);
     for (; i < end; ++i)
       if (s.events[i].turn != 0)
         s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
@@ -239,8 +235,7 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
     for (std::size_t k = first; goes_on && k < end; ++k) {
       if (k == seen)
         goes_on = report(k, turn);
-      else if (s.events[k].turn == 0 &&
-               (s.states.shows(s.events[k].geometry) || std::ranges::find(s.shown, k) != s.shown.end()))
+      else if (s.events[k].turn == 0 && (s.events[k].shown || s.states.shows(s.events[k].geometry)))
         goes_on = report(k, 0);
     }
   }

@@ -143,11 +143,10 @@ int InsideTest::solids_at(const Ray& ray, std::span<const Crossing> crossings, b
   crossed.clear();
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const CrossedSolid solid = crossed_solid(accel_, crossings[i].hit);
-    const bool is_mesh = static_cast<Kind>(solid.accel->kinds[solid.geometry]) == Kind::triangle;
+    const auto kind = static_cast<Kind>(solid.accel->kinds[solid.geometry]);
     // Surfaces in combinations have no inside.
-    const bool is_surface =
-        crossings[i].turn == 0 && static_cast<Kind>(solid.accel->kinds[solid.geometry]) == Kind::csg;
-    if (has_inside(*solid.accel, solid.geometry) && (meshes_ || !is_mesh) && !is_surface)
+    const bool is_surface = kind == Kind::csg && crossings[i].turn == 0;
+    if (has_inside(*solid.accel, solid.geometry) && (meshes_ || kind != Kind::triangle) && !is_surface)
       crossed.push_back({solid.instance, solid.item, i, crossings[i], solid.accel, solid.geometry});
   }
   int solids = 0;

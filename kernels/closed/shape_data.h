@@ -178,7 +178,7 @@ enum class CsgOp : std::uint8_t {
   unite,      ///< what is in any child
   intersect,  ///< what is in all children
   subtract,   ///< what is in the first child and in none of the others
-  surfaces,   ///< no combination: surfaces that have no inside, seen where the root would hold their inside
+  surfaces,   ///< no combination: surfaces without an inside, which other operands cut
 };
 
 }  // namespace oktett

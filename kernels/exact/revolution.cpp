@@ -155,10 +155,10 @@ void keep_radius_piece(const Piece& piece, int degree, const HalfPlanePoint& p, 
   keep_nearer(p, {at.x, at.z}, {right.x, right.z}, best);
 }
 
-/// The nearest point of a piece whose c is the squared radius f. The square of
-/// the distance from (rho, z) is rho^2 - 2 rho sqrt(f) + q, where q = f + (y - z)^2. Its slope is zero where
-/// q' sqrt(f) = rho f', so that q'^2 f = rho^2 f'^2, of degree 7. Between the places at which q' or f' is
-/// zero no other root of the square is near one that counts.
+/// The nearest point of a piece whose c is the squared radius f. The squared distance from (rho, z) is
+/// rho^2 - 2 rho sqrt(f) + q, where q = f + (y - z)^2. Its slope is zero where q' sqrt(f) = rho f', so that
+/// q'^2 f = rho^2 f'^2, of degree 7. The piece is cut where q' or f' is zero: there roots of the square with
+/// the other sign meet those that count.
 class SquaredPiece {
  public:
   SquaredPiece(const Piece& piece, const HalfPlanePoint& p) : piece_(piece), p_(p) {
