@@ -8,15 +8,13 @@
 #include <string_view>
 #include <utility>
 
+#include "io/pov/translate/texture.h"
+
 namespace oktett::pov {
 namespace {
 
 /// Most looks of a blob: textures that show textures may not be nested more deeply.
 constexpr std::size_t kMostLooks = 8;
-
-bool is_look(std::string_view keyword) {
-  return keyword == "texture" || keyword == "pigment" || keyword == "finish" || keyword == "normal";
-}
 
 const Block* block_of(const Element& element) {
   const auto* const block = std::get_if<std::shared_ptr<const Block>>(&element.value);

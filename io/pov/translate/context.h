@@ -20,6 +20,15 @@ namespace oktett::pov {
 
 class ObjectQueries;
 
+/// How the numbers of a scene's colours are meant, in which its light is computed.
+struct SceneGamma {
+  double power = 1;     ///< light is shown raised to it
+  bool is_raw = false;  ///< instead the file holds the numbers, as in scenes of before 3.7 that state none
+
+  /// Whether the numbers are about those that screens take.
+  bool is_encoded() const { return is_raw || power > 1.6; }
+};
+
 /// A scene file without a file.
 struct Context {
   explicit Context(const Document& d) : document(d), tree(d) {}
@@ -33,9 +42,7 @@ struct Context {
   Node materials = nullptr, define = nullptr, objects = nullptr, lights = nullptr, media = nullptr;
   std::string mesh_prefix;
   ObjectQueries* queries = nullptr;  ///< null: nobody can be asked for values of functions
-  double gamma = 1;                  ///< in which light is computed
-  bool encoded = false;              ///< as screens have it, or nearly
-  bool raw = false;                  ///< the file holds the numbers
+  SceneGamma gamma;                  ///< in which light is computed
   std::uint32_t samples = 0;         ///< per pixel, that the camera asks for; 0: it asks for none
   bool has_fog = false;              ///< or media: it matters which solids are hollow
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each

@@ -72,7 +72,7 @@ bool ObjectWriter::is_dressed(const Block& block) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     if (inner == nullptr || *inner == nullptr) continue;
     const std::string_view k = (*inner)->keyword;
-    if (k == "texture" || k == "pigment" || k == "material" || k == "finish" || k == "normal") return true;
+    if (is_look(k) || k == "material") return true;
     if (is_object(k)) any_child = true, all &= is_dressed(**inner);
   }
   if (!block.name.empty()) dressed_[&block] = any_child && all;
@@ -180,13 +180,12 @@ ObjectWriter::Maybe ObjectWriter::build_instance(const std::shared_ptr<const Blo
 
 /// Whether an object, or the only one that it is a copy of, has a texture or a part of one.
 static bool has_own_look(const Block& block) {
-  constexpr std::array<std::string_view, 5> kLooks{"texture", "pigment", "finish", "normal", "material"};
   const Block* only = nullptr;
   std::size_t objects = 0;
   for (const Element& e : block.elements) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
     if (inner == nullptr || *inner == nullptr) continue;
-    if (std::ranges::find(kLooks, (*inner)->keyword) != kLooks.end()) return true;
+    if (is_look((*inner)->keyword) || (*inner)->keyword == "material") return true;
     if (is_object((*inner)->keyword)) only = inner->get(), ++objects;
   }
   return block.keyword == "object" && objects == 1 && has_own_look(*only);
@@ -275,7 +274,7 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
     if (const std::shared_ptr<const Block> inner = a.peek_shared_block()) {
       a.take();
       const std::string_view k = inner->keyword;
-      if (k == "texture" || k == "pigment" || k == "finish" || k == "normal") {
+      if (is_look(k)) {
         m.own.items.push_back({inner, block.default_texture, m.moves.all, by_uv});
       } else if (k == "interior") {
         m.own.interior = inner, m.before_interior = m.moves.all;

@@ -543,7 +543,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
     }
   }
   // Where light is computed in the screen's gamma, decoded numbers are those of the file, too.
-  if (p.image != nullptr && (!decoded || context_.encoded))
+  if (p.image != nullptr && (!decoded || context_.gamma.is_encoded()))
     tree.put(p.image, "color_space", tree.word(p.where, "linear"));
   if (p.image != nullptr && !blended) tree.put(p.image, "filter", tree.word(p.where, "nearest"));
   p.once = once && onto == "planar";

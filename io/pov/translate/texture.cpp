@@ -18,6 +18,10 @@ static void for_each_moved(Look& look, const F& f) {
   }
 }
 
+bool is_look(std::string_view keyword) {
+  return keyword == "texture" || keyword == "pigment" || keyword == "finish" || keyword == "normal";
+}
+
 void Look::move(const Moves& moves) {
   if (!moves.empty()) for_each_moved(*this, [&](PovPattern& p) { p.move(moves); });
 }
@@ -226,6 +230,12 @@ Look look_of(Context& context, const std::vector<LookItem>& items,
   bool is_first = true;
   for (const LookItem& item : items) {
     const std::string_view k = item.block->keyword;
+    Look& top = look.layers.empty() ? look : look.layers.back();
+    if (k != "texture" && (k == "finish" || !top.is_plain())) {
+      // Of textures in a pattern all are changed.
+      read_look(context, *item.block, top), is_first = false;
+      continue;
+    }
     Look own;
     read_look(context, *item.block, own);
     if (item.by_uv) use_uv(own);
@@ -233,23 +243,14 @@ Look look_of(Context& context, const std::vector<LookItem>& items,
     if (item.to_texture.is_invertible() && !(item.to_texture == Affine{}))
       moves.add({Move::Kind::matrix, {}, item.to_texture.inverse(), {}});
     own.move_in_space(moves);
-    if (k == "texture") {
-      if (is_first)
-        look = std::move(own);
-      else
-        put_over(look, std::move(own));
-    } else {
-      // Of textures in a pattern all are changed.
-      Look& top = look.layers.empty() ? look : look.layers.back();
-      if (!top.is_plain())
-        read_look(context, *item.block, top);
-      else if (k == "pigment")
-        top.pigment = std::move(own.pigment);
-      else if (k == "normal")
-        top.normal = std::move(own.normal);
-      else
-        read_look(context, *item.block, top);
-    }
+    if (k == "pigment")
+      top.pigment = std::move(own.pigment);
+    else if (k == "normal")
+      top.normal = std::move(own.normal);
+    else if (is_first)
+      look = std::move(own);
+    else
+      put_over(look, std::move(own));
     is_first = false;
   }
   return look;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/pov/translate/finish.h"
@@ -42,7 +43,10 @@ struct TextureEntry {
 /// on top of what is known of a look.
 void read_look(Context& context, const Block& block, Look& look);
 
-/// A block `texture`, `pigment`, `normal` or `finish` of an object.
+/// Whether a block of this keyword is one of those.
+bool is_look(std::string_view keyword);
+
+/// A block of these of an object.
 struct LookItem {
   std::shared_ptr<const Block> block;
   std::shared_ptr<const Block>

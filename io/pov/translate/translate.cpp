@@ -19,12 +19,6 @@ const Block* block_of(const Element& statement) {
   return block != nullptr ? block->get() : nullptr;
 }
 
-/// How the numbers of a scene's colours are meant, in which its light is computed.
-struct SceneGamma {
-  double power = 1;     ///< light is shown raised to it
-  bool is_raw = false;  ///< instead the file holds the numbers, as in scenes of before 3.7 that state none
-};
-
 SceneGamma gamma_of(const Document& document) {
   SceneGamma gamma{1, document.version < 3.7};
   for (const Element& statement : document.statements) {
@@ -41,12 +35,6 @@ SceneGamma gamma_of(const Document& document) {
     }
   }
   return gamma;
-}
-
-void set_gamma(Context& context) {
-  const SceneGamma gamma = gamma_of(context.document);
-  context.gamma = gamma.power, context.encoded = gamma.is_raw || gamma.power > 1.6;
-  context.raw = gamma.is_raw;
 }
 
 /// Statements that stand for themselves.
@@ -128,7 +116,7 @@ TranslatedObject translate_object(const Document& document, const std::shared_pt
 TranslatedScene translate_look(const Document& document, const std::shared_ptr<const Block>& look) {
   Context context(document);
   begin_sections(context);
-  set_gamma(context);
+  context.gamma = gamma_of(document);
   auto sphere = std::make_shared<Block>();
   sphere->keyword = "sphere", sphere->where = look->where;
   sphere->elements = {
@@ -144,7 +132,7 @@ TranslatedScene translate_look(const Document& document, const std::shared_ptr<c
 TranslatedScene translate(const Document& document, const TranslateOptions& options) {
   Context context(document);
   context.warnings = document.warnings;
-  set_gamma(context);
+  context.gamma = gamma_of(document);
   context.mesh_prefix = options.mesh_prefix, context.queries = options.queries;
   Tree& tree = context.tree;
   const Place top;
@@ -169,8 +157,8 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   const Node film = tree.map(top);
   tree.put(film, "width", tree.number(top, options.width)),
       tree.put(film, "height", tree.number(top, options.height));
-  if (context.gamma != 1) tree.put(film, "gamma", tree.number(top, context.gamma));
-  if (context.raw) tree.put(film, "tone", tree.word(top, "raw"));
+  if (context.gamma.power != 1) tree.put(film, "gamma", tree.number(top, context.gamma.power));
+  if (context.gamma.is_raw) tree.put(film, "tone", tree.word(top, "raw"));
   tree.put(root, "film", film);
   const Node integrator = tree.map(s.settings_place);
   tree.put(integrator, "kind", tree.word(s.settings_place, "whitted"));
