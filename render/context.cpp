@@ -52,8 +52,8 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.exponent = highlight_exponent(m.specular, m.phong);
   s.varies = has_textures(m) || m.filter || m.opacity != 1 || (!m.emits_behind && glows(m)) || !m.surface ||
              m.interior != kNoId || m.reflection_varies || !m.fresnel || m.conserve_energy ||
-             m.brilliance != 1 || m.specular_blinn != 0 || m.grain != 0 || m.reflection_color ||
-             m.back != kNoId;
+             m.brilliance != 1 || m.specular_blinn != 0 || m.grain != 0 || m.diffuse_back != 0 ||
+             m.film != 0 || m.specular_fades || m.reflection_fades || m.reflection_color || m.back != kNoId;
   s.reflection = m.reflection;
   s.transparency = m.transparency, s.ior = m.ior;
   return s;

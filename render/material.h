@@ -117,7 +117,8 @@ inline constexpr std::int32_t kNoPriority = -1;
 
 /// A material of the Whitted model. The light that leaves a point is the sum of
 /// - emission,
-/// - color * (ambient * ambient light + diffuse * sum over lights, by the cosine to the power of brilliance),
+/// - color * (ambient * ambient light + diffuse * sum over lights, by the cosine to the power of brilliance;
+///   diffuse_back for lights behind the surface),
 /// - specular_color * (specular * Phong's highlights + specular_blinn * Blinn's highlights),
 /// - reflection_color * reflection * reflected ray,
 /// - transparency * (refracted and reflected ray, split by Fresnel's equations).
@@ -142,6 +143,11 @@ struct Material {
   /// In Whitted's model: the most that is taken at random, from place to place, from the diffuse light of
   /// each lamp, [0, inf).
   float grain = 0;
+  /// In Whitted's model: `diffuse` for lamps on the other side than the viewer, [0, inf).
+  float diffuse_back = 0;
+  /// In Whitted's model: how much a thin film colours the light of lamps and mirrors, and its thickness in
+  /// nanometres, both [0, inf); see film_color().
+  float film = 0, film_thickness = 400;
   float reflection = 0;  ///< weight of the mirror ray, [0, 1]; of one that varies, head-on
   /// If reflection_varies, the weight of the mirror ray at grazing angles, [0, 1]. Between it grows with 1 -
   /// c to the power of the falloff, > 0, c being the cosine of the angle to the normal; or, if that is 0, as
@@ -155,7 +161,9 @@ struct Material {
   bool fresnel = true;  ///< transparency is split by Fresnel's equations; false: all of it is refracted, and
                         ///< where nothing can be, all light is mirrored
   bool conserve_energy = false;  ///< what the weight of the mirror ray takes is not refracted
-  float opacity = 1;             ///< part of the surface that is there, [0, 1]; the rest is holes
+  /// The colours of highlights, and of the mirror ray, turn white towards grazing angles; see metal_fade().
+  bool specular_fades = false, reflection_fades = false;
+  float opacity = 1;  ///< part of the surface that is there, [0, 1]; the rest is holes
   /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other
   /// members, and so is all that Whitted's model shows of a material without textures: see
   /// resemble_principled.
@@ -174,7 +182,8 @@ struct Material {
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
   std::uint32_t reflection_grazing_texture = kNoId, reflection_color_texture = kNoId;
   std::uint32_t brilliance_texture = kNoId, specular_blinn_texture = kNoId, blinn_texture = kNoId;
-  std::uint32_t grain_texture = kNoId;
+  std::uint32_t grain_texture = kNoId, diffuse_back_texture = kNoId;
+  std::uint32_t film_texture = kNoId, film_thickness_texture = kNoId;
   std::uint32_t ior_texture = kNoId, filter_texture = kNoId;
   /// These multiply `color` and `opacity` once more: colours of vertices beside an image.
   std::uint32_t tint_texture = kNoId, tint_opacity_texture = kNoId;
@@ -218,7 +227,13 @@ inline constexpr PhongNumber kPhongNumbers[] = {
      "weight of highlights by Blinn"},
     {"blinn", &Material::blinn, &Material::blinn_texture, "exponent of Blinn's highlight"},
     {"grain", &Material::grain, &Material::grain_texture,
-     "`whitted`: most that is taken at random from the diffuse light of a lamp"}};
+     "`whitted`: most that is taken at random from the diffuse light of a lamp"},
+    {"diffuse_back", &Material::diffuse_back, &Material::diffuse_back_texture,
+     "`whitted`: weight of diffuse light of lamps on the other side"},
+    {"film", &Material::film, &Material::film_texture,
+     "`whitted`: how much a thin film colours light of lamps and mirrors"},
+    {"film_thickness", &Material::film_thickness, &Material::film_thickness_texture,
+     "its thickness in nanometres"}};
 
 /// Calls f(index) for each member of a material, which may be const, that is an index of a texture.
 template <class AnyMaterial, class F>
@@ -261,6 +276,7 @@ PrincipledMaterial principled_like(const Material& m);
 struct PhongValues {
   float ambient, diffuse, specular, phong, reflection, transparency, reflection_grazing;
   float brilliance = 1, specular_blinn = 0, blinn = 128, grain = 0;
+  float diffuse_back = 0, film = 0, film_thickness = 400;
 };
 
 /// What comes near to principled parameters in Whitted's model: smooth metal is a mirror, smooth glass is

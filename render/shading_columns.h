@@ -77,6 +77,8 @@ struct ShadingColumns {
   float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost], transparency[kMost];
   float brilliance[kMost], grain[kMost];      ///< of hits that are `uneven`; `grain` is what is taken there
   float specular_blinn[kMost], blinn[kMost];  ///< of hits that are `blinned`
+  float diffuse_back[kMost];                  ///< of hits that are `lit_behind`
+  float film[kMost], film_thickness[kMost];   ///< of hits that are `filmed`
   float eta[kMost];  ///< index of refraction behind the surface, as the ray sees it, relative to before it
   std::int32_t exponent[kMost];
   /// Bit k: the material of hit k `varies`, or `sends_rays`. Lanes after the last hit repeat its bits.
@@ -87,6 +89,9 @@ struct ShadingColumns {
   /// Bit k: the diffuse light of hit k is not that of Lambert's law, or the hit has a highlight by Blinn. Of
   /// hits that are `varying` alone.
   std::uint64_t uneven, blinned;
+  /// Bit k: lamps behind hit k light it; a film colours light there; the colours of its highlights fade. Of
+  /// hits that are `varying` alone.
+  std::uint64_t lit_behind, filmed, fading;
 
   RaisedPoints* raised = nullptr;  ///< of the hits
 };

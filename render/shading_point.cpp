@@ -133,9 +133,20 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
 }
 
 PhongValues phong_values(const RenderContext& c, const Material& m, const TexturePlace& place) {
-  PhongValues values{
-      m.ambient,    m.diffuse,        m.specular, m.phong, m.reflection, m.transparency, m.reflection_grazing,
-      m.brilliance, m.specular_blinn, m.blinn,    m.grain};
+  PhongValues values{m.ambient,
+                     m.diffuse,
+                     m.specular,
+                     m.phong,
+                     m.reflection,
+                     m.transparency,
+                     m.reflection_grazing,
+                     m.brilliance,
+                     m.specular_blinn,
+                     m.blinn,
+                     m.grain,
+                     m.diffuse_back,
+                     m.film,
+                     m.film_thickness};
   float* const at[] = {&values.ambient,
                        &values.diffuse,
                        &values.specular,
@@ -146,7 +157,10 @@ PhongValues phong_values(const RenderContext& c, const Material& m, const Textur
                        &values.brilliance,
                        &values.specular_blinn,
                        &values.blinn,
-                       &values.grain};
+                       &values.grain,
+                       &values.diffuse_back,
+                       &values.film,
+                       &values.film_thickness};
   for (std::size_t i = 0; i < std::size(kPhongNumbers); ++i)
     *at[i] = textured(c, *at[i], m.*kPhongNumbers[i].texture, kPhongNumbers[i].range, place);
   return values;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -87,6 +88,47 @@ void Interpreter::parse_elements(std::vector<Element>& elements, const Token& op
   hold_ = outer;
 }
 
+/// The union that an element of a union stands for, if it is no more than its objects; else null.
+static const Block* plain_union(const Element& e) {
+  const auto* held = std::get_if<BlockPtr>(&e.value);
+  while (held != nullptr && *held != nullptr && (*held)->keyword == "object" && (*held)->elements.size() == 1)
+    held = std::get_if<BlockPtr>(&(*held)->elements[0].value);
+  if (held == nullptr || *held == nullptr || (*held)->keyword != "union") return nullptr;
+  constexpr std::array<std::string_view, 10> kModifiers{
+      "texture",          "pigment",  "normal",     "finish",     "interior",
+      "interior_texture", "material", "clipped_by", "bounded_by", "photons"};
+  const bool is_plain = std::ranges::all_of((*held)->elements, [&](const Element& part) {
+    const auto* const block = std::get_if<BlockPtr>(&part.value);
+    return block != nullptr && *block != nullptr &&
+           std::ranges::find(kModifiers, (*block)->keyword) == kModifiers.end();
+  });
+  return is_plain ? held->get() : nullptr;
+}
+
+/// Unions nest so deeply until their parts are put in place of them.
+static constexpr std::uint32_t kDeepUnion = 256;
+
+/// Adds an element of a union, or the parts of the union that it stands for, as far as these nest deeply.
+static void splice(const Element& e, std::vector<Element>& flat) {
+  const Block* const inner = plain_union(e);
+  if (inner == nullptr || inner->depth < kDeepUnion) return flat.push_back(e);
+  for (const Element& part : inner->elements) splice(part, flat);
+}
+
+/// Loops add to a union by declaring it again as one of itself and another object. Returns how many blocks
+/// nest in `all` when the parts stand in it themselves.
+std::uint32_t Interpreter::flatten_union(Block& all, const Place& where) {
+  std::vector<Element> flat;
+  for (const Element& e : all.elements) splice(e, flat);
+  count_step(where, flat.size());
+  all.elements = std::move(flat);
+  std::uint32_t depth = 0;
+  for (const Element& e : all.elements)
+    if (const auto* const block = std::get_if<BlockPtr>(&e.value); block != nullptr && *block != nullptr)
+      depth = std::max(depth, (*block)->depth);
+  return depth;
+}
+
 /// A block whose opening brace was read.
 std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint32_t& depth) {
   const Level level(*this, keyword.where);
@@ -97,7 +139,9 @@ std::shared_ptr<Block> Interpreter::parse_block(const Token& keyword, std::uint3
   block->default_texture = default_texture_;
   std::uint32_t inner = 0;
   parse_elements(block->elements, keyword, keyword.kind == Token::Kind::word ? '}' : ']', inner);
-  depth = std::max(depth, deeper(inner, keyword.where));
+  if (inner >= 2 * kDeepUnion && block->keyword == "union") inner = flatten_union(*block, keyword.where);
+  block->depth = deeper(inner, keyword.where);
+  depth = std::max(depth, block->depth);
   // An entry of a map without a number, as `average` may have, has the weight 1.
   if (block->keyword == "[" && !block->elements.empty() &&
       !std::holds_alternative<Numbers>(block->elements[0].value)) {

@@ -65,7 +65,8 @@ struct Block {
   std::string_view keyword;
   Place where;
   std::vector<Element> elements;
-  std::string name;  ///< by which it was declared; empty: it has none
+  std::string name;         ///< by which it was declared; empty: it has none
+  std::uint32_t depth = 1;  ///< how many blocks nest, this one included
   std::shared_ptr<const Block>
       default_texture;  ///< of #default where an object stands; null: the program's own
 };

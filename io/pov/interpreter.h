@@ -173,6 +173,7 @@ class Interpreter {
   void parse_element(std::vector<Element>& elements, std::uint32_t& depth);
   void add_value(std::vector<Element>& elements, const Token& token, std::uint32_t& depth);
   std::shared_ptr<Block> parse_block(const Token& keyword, std::uint32_t& depth);
+  std::uint32_t flatten_union(Block& all, const Place& where);
   Datum parse_block_value(const Token& keyword);
   Datum parse_spline(const Token& keyword);
   Datum parse_array(const Token& keyword);

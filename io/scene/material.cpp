@@ -145,6 +145,9 @@ struct PhongKeys {
                "power of 1 - cosine by which reflection grows to that at grazing angles; or `fresnel`");
     p.field("fresnel", m.fresnel, "`whitted`: light that passes is less what Fresnel's equations mirror");
     p.field("conserve_energy", m.conserve_energy, "`whitted`: light that passes is less what is mirrored");
+    p.field("specular_fades", m.specular_fades,
+            "`whitted`: highlights turn white towards grazing angles, as those of metals do");
+    p.field("reflection_fades", m.reflection_fades, "`whitted`: so does the colour of mirrored light");
     p.optional("roughness", Textured<float>{rough.parameters.roughness, rough.roughness_texture},
                kUnitInterval, "makes `path` use a principled material of this colour");
     p.optional("metallic", Textured<float>{rough.parameters.metallic, rough.metallic_texture}, kUnitInterval,
@@ -298,6 +301,8 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& 
   load.warn_if_unused(fields, "reflection_falloff", !m.reflection_varies, "there is no 'reflection_grazing'");
   load.warn_if_unused(fields, "reflection_color", !mirrors, "'reflection' is 0");
   load.warn_if_unused(fields, "blinn", m.specular_blinn == 0, "'specular_blinn' is 0");
+  load.warn_if_unused(fields, "film_thickness", m.film == 0, "'film' is 0");
+  load.warn_if_unused(fields, "reflection_fades", !mirrors, "'reflection' is 0");
   load.warn_if_unused(fields, "map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
   load.warn_if_unused(fields, "normal_scale", m.normal_texture == kNoId, "there is no 'map_normal'");
   load.warn_if_unused(fields, "bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");

@@ -7,6 +7,7 @@
 #include "core/simd_memory.h"
 #include "core/simd_native.h"
 #include "core/simd_order.h"
+#include "render/angle_colors.h"
 #include "render/bsdf/optics.h"
 #include "render/bsdf/phong_lobes.h"
 #include "render/context.h"
@@ -94,6 +95,7 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
   c.varying = c.sending = c.unsplit = c.uneven = c.blinned = 0;
+  c.lit_behind = c.filmed = c.fading = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const PickedLanes<F> ray(c.ray + i);
     const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]),
@@ -157,6 +159,12 @@ OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highli
   return F::load(lanes);
 }
 
+/// Between the rays and the normals of hits i ..., negative.
+template <class F>
+OKTETT_INLINE F arriving_cosines(const ShadingColumns& c, std::size_t i) {
+  return dot_lanes(load_lanes<F>(c.direction, i), load_lanes<F>(c.ns, i));
+}
+
 /// The diffuse light of hits i ... by the `cosine`, in `lanes` with brilliance and grain.
 template <class F>
 OKTETT_NOINLINE F uneven_diffuse(const F& cosine, const F& diffuse, const ShadingColumns& c, std::size_t i,
@@ -199,23 +207,64 @@ OKTETT_NOINLINE F blinn_highlights(const PhongCosines<F>& at, const ShadingColum
   return F::load(value);
 }
 
+/// `color` in `lanes` as it has turned white for these cosines, see metal_fade().
+template <class F>
+OKTETT_NOINLINE Vec3<F> faded_lanes(const Vec3<F>& color, const F& cosine, unsigned lanes) {
+  float x[F::kWidth], part[F::kWidth];
+  cosine.store(x);
+  for (int k = 0; k < F::kWidth; ++k)
+    part[k] = (lanes >> k & 1) != 0 ? static_cast<float>(metal_fade(x[k])) : 0;
+  const F fade = F::load(part), one(1.0f);
+  return {color.x + (one - color.x) * fade, color.y + (one - color.y) * fade,
+          color.z + (one - color.z) * fade};
+}
+
+/// `light` at hits i ... in `lanes` as a film colours it, see film_color(). `cosines`: between the normal and
+/// the light, plus that between the normal and the viewer.
+template <class F>
+OKTETT_NOINLINE Vec3<F> filmed_lanes(const Vec3<F>& light, const F& cosines, const ShadingColumns& c,
+                                     std::size_t i, unsigned lanes) {
+  float sum[F::kWidth], factor[3][F::kWidth];
+  cosines.store(sum);
+  for (int k = 0; k < F::kWidth; ++k) {
+    const bool has_film = (lanes >> k & 1) != 0;
+    const Color color =
+        has_film ? film_color(c.film[i + k], c.film_thickness[i + k], sum[k]) : Color{1, 1, 1};
+    for (int axis = 0; axis < 3; ++axis) factor[axis][k] = color[axis];
+  }
+  return {light.x * F::load(factor[0]), light.y * F::load(factor[1]), light.z * F::load(factor[2])};
+}
+
 /// Colour * diffuse * cos(n, l) + specular colour * specular * max(0, r . v)^phong (Phong 1975) for hits
 /// i ... of the columns, where the light is in front of the surface; both sides of a surface are lit alike.
+/// Where the light is `behind`, colour * diffuse_back * cosine.
 template <class F>
-OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const ShadingColumns& c, std::size_t i) {
+OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const typename F::M& behind,
+                                 const ShadingColumns& c, std::size_t i) {
   const F zero(0.0f), specular = F::load(c.specular + i);
-  F lit = F::load(c.diffuse + i) * at.cosine;
-  if (const unsigned uneven = static_cast<unsigned>(c.uneven >> i) & real_lanes<F>(c, i); uneven != 0)
-    lit = uneven_diffuse(at.cosine, F::load(c.diffuse + i), c, i, uneven);
+  const unsigned real = real_lanes<F>(c, i), front = ~bits(behind) & real;
+  F diffuse = F::load(c.diffuse + i);
+  if (front != real) diffuse = select(behind, F::load(c.diffuse_back + i), diffuse);
+  F lit = diffuse * at.cosine;
+  if (const unsigned uneven = static_cast<unsigned>(c.uneven >> i) & real; uneven != 0)
+    lit = uneven_diffuse(at.cosine, diffuse, c, i, uneven);
   Vec3<F> sum = scale_lanes(load_lanes<F>(c.color, i), lit);
-  if (const unsigned blinned = static_cast<unsigned>(c.blinned >> i) & real_lanes<F>(c, i); blinned != 0)
-    sum =
-        add_lanes(sum, scale_lanes(load_lanes<F>(c.specular_color, i), blinn_highlights(at, c, i, blinned)));
+  const unsigned blinned = static_cast<unsigned>(c.blinned >> i) & front;
   // The comparisons keep NaN in the sum.
-  const auto shines = ~(specular == zero) & ~(at.highlight <= zero);
-  if (none(shines)) return sum;
-  const F shine = specular * highlight_powers(at.highlight, c, i);
-  return select_lanes(shines, add_lanes(sum, scale_lanes(load_lanes<F>(c.specular_color, i), shine)), sum);
+  const auto shines = ~(specular == zero) & ~(at.highlight <= zero) & ~behind;
+  if (blinned != 0 || any(shines)) {
+    Vec3<F> color = load_lanes<F>(c.specular_color, i);
+    if (const unsigned fading = static_cast<unsigned>(c.fading >> i) & front; fading != 0)
+      color = faded_lanes(color, at.cosine, fading);
+    if (blinned != 0) sum = add_lanes(sum, scale_lanes(color, blinn_highlights(at, c, i, blinned)));
+    if (any(shines)) {
+      const F shine = specular * highlight_powers(at.highlight, c, i);
+      sum = select_lanes(shines, add_lanes(sum, scale_lanes(color, shine)), sum);
+    }
+  }
+  if (const unsigned filmed = static_cast<unsigned>(c.filmed >> i) & real; filmed != 0)
+    sum = filmed_lanes(sum, at.cosine - arriving_cosines<F>(c, i), c, i, filmed);
+  return sum;
 }
 
 /// What the profile of a light gives in the directions away from it, -l.
@@ -292,8 +341,9 @@ template <class F>
 struct LitHits {
   SourceLight<F> light;
   PhongCosines<F> at;
-  typename F::M moved;  ///< the hits that are moved to their raised points
-  Vec3<F> raised;       ///< these points
+  typename F::M behind;  ///< the hits that are lit on the other side
+  typename F::M moved;   ///< the hits that are moved to their raised points
+  Vec3<F> raised;        ///< these points
 };
 
 /// Moves hits i, i + 1, ... that the light meets from above the shading normal's horizon, but from behind the
@@ -320,6 +370,15 @@ OKTETT_INLINE void raise_hits(const LightSource& light, const ShadingColumns& c,
   hits.moved = moved, hits.raised = raised;
 }
 
+/// Lights hits i, i + 1, ... in `lanes` from behind.
+template <class F>
+OKTETT_NOINLINE void light_behind(const ShadingColumns& c, std::size_t i, unsigned lanes, LitHits<F>& hits) {
+  const F zero(0.0f), cosine = dot_lanes(load_lanes<F>(c.ns, i), hits.light.l);
+  hits.behind =
+      F::M::from_bits(lanes) & (cosine < zero) & (dot_lanes(load_lanes<F>(c.ng, i), hits.light.l) < zero);
+  hits.at.cosine = select(hits.behind, -cosine, hits.at.cosine);
+}
+
 /// The light of a source at hits i, i + 1, ... of the columns.
 template <class F>
 OKTETT_INLINE LitHits<F> lit_hits(const InteractionBlock& s, const LightSource& light,
@@ -329,8 +388,10 @@ OKTETT_INLINE LitHits<F> lit_hits(const InteractionBlock& s, const LightSource& 
   hits.light = source_light(light, position);
   hits.at = phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i),
                           hits.light.l);
-  hits.moved = F::M::from_bits(0);
+  hits.behind = hits.moved = F::M::from_bits(0);
   raise_hits(light, c, i, position, hits);
+  if (const unsigned lanes = static_cast<unsigned>(c.lit_behind >> i) & real_lanes<F>(c, i); lanes != 0)
+    light_behind(c, i, lanes, hits);
   return hits;
 }
 
@@ -342,12 +403,12 @@ void shadow_rays_code(const InteractionBlock& s, const LightSource& light, const
   std::size_t end = out.size;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero)) &&
-        (static_cast<unsigned>(c.blinned >> i) & real_lanes<F>(c, i)) == 0)
+        (static_cast<unsigned>((c.blinned | c.lit_behind) >> i) & real_lanes<F>(c, i)) == 0)
       continue;
     const LitHits<F> hits = lit_hits<F>(s, light, c, i);
     unsigned lit = bits(~(hits.at.cosine <= zero)) & real_lanes<F>(c, i);
     if (lit == 0) continue;
-    const Vec3<F> shine = phong_sums(hits.at, c, i), throughput = load_lanes<F>(c.throughput, i);
+    const Vec3<F> shine = phong_sums(hits.at, hits.behind, c, i), throughput = load_lanes<F>(c.throughput, i);
     const Vec3<F>& color = hits.light.color;
     const Vec3<F> arriving{throughput.x * shine.x * color.x, throughput.y * shine.y * color.y,
                            throughput.z * shine.z * color.z};

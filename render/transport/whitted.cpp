@@ -6,6 +6,7 @@
 #include "accel/accel_data.h"
 #include "core/math.h"
 #include "core/random.h"
+#include "render/angle_colors.h"
 #include "render/hit_object.h"
 #include "render/light/light_share.h"
 #include "render/shading_lanes.h"
@@ -39,8 +40,16 @@ void name_hits(const RenderContext& context, const std::uint32_t* which, const I
     c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
 }
 
+/// Between the normal and the direction back along the ray.
+double arriving_cosine(const ShadingPoint& p) { return -dot(Vec3d(p.direction), Vec3d(p.ns)); }
+
 /// The colour of light that is mirrored.
-Color mirror_color(const ShadingPoint& p) { return p.reflection_color.value_or(p.specular_color); }
+Color mirror_color(const ShadingPoint& p) {
+  Color color = p.reflection_color.value_or(p.specular_color);
+  if (p.material->reflection_fades && !p.material->principled)
+    color = faded(color, metal_fade(arriving_cosine(p)));
+  return color;
+}
 
 /// A number in [0, 1) that looks random, and is the same wherever a ray meets this place.
 float random_of_place(const Vec3f& place) {
@@ -77,6 +86,18 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
     c.blinned |= std::uint64_t{1} << k;
     c.specular_blinn[k] = p.values.specular_blinn, c.blinn[k] = p.values.blinn;
   }
+  if (p.values.diffuse_back != 0) {
+    c.lit_behind |= std::uint64_t{1} << k;
+    c.diffuse_back[k] = p.values.diffuse_back;
+  }
+  if (p.values.film != 0) {
+    c.filmed |= std::uint64_t{1} << k;
+    c.film[k] = p.values.film, c.film_thickness[k] = p.values.film_thickness;
+    InteractionBlock::put(
+        c.mirror_color, k,
+        mirror_color(p) * film_color(p.values.film, p.values.film_thickness, 2 * arriving_cosine(p)));
+  }
+  if (p.material->specular_fades && !p.material->principled) c.fading |= std::uint64_t{1} << k;
   c.diffuse[k] = p.values.diffuse;
   c.specular[k] = p.values.specular;
   c.phong[k] = p.values.phong;

@@ -209,5 +209,146 @@ TEST(PovModifiers, OldScenesNameTheNumbersOfTheFile) {
   EXPECT_EQ(image.bytes, (std::vector<std::uint8_t>{51, 153, 255}));
 }
 
+/// Three numbers that POV-Ray gave for the middle of a scene.
+struct Measured {
+  const char* text;
+  Vec3f color;
+};
+void expect_measured(const std::vector<Measured>& cases) {
+  for (const Measured& c : cases) {
+    const Vec3f seen = middle(c.text);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], c.color[k], 4e-5f) << c.text;
+  }
+}
+
+TEST(PovModifiers, LampsLightTheBack) {
+  expect_measured({
+      {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse .6, .4 brilliance 2 } }",
+       {0.22327f, 0.111635f, 0.0558175f}},
+      {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse .6 } double_illuminate }",
+       {0.4482643f, 0.2241398f, 0.1120623f}},
+      {"light_source { <3, 2, 9> rgb 1 } union { disc { 0, <.3, .2, -1>, 1 } double_illuminate "
+       "pigment { rgb <1, .5, .25> } finish { ambient 0 diffuse .6 } }",
+       {0.4482643f, 0.2241398f, 0.1120623f}},
+      {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 finish { diffuse .6 ambient 0 } }",
+       {0, 0, 0}},
+  });
+}
+
+TEST(PovModifiers, MetalsAreWhiteAtGrazingAngles) {
+  expect_measured({
+      {"light_source { <9, 0, .9> rgb 1 } disc { 0, <1, 0, -1.1>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse 0 phong 1 phong_size 1 metallic } }",
+       {0.9810788f, 0.5106432f, 0.2754253f}},
+      {"light_source { <9, 0, 4> rgb 1 } disc { 0, <1, 0, -.6>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse 0 specular .8 roughness 1 metallic .5 } }",
+       {0.7994812f, 0.6084993f, 0.5130083f}},
+      {"background { rgb .8 } disc { 0, <1, 0, -.2>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse 0 reflection { .9 metallic } } }",
+       {0.7199969f, 0.44271f, 0.3040665f}},
+  });
+}
+
+TEST(PovModifiers, FilmsColourLampsAndMirrors) {
+  const char* const lit =
+      "light_source { <0, 0, -9> rgb 1 } disc { 0, <.6, 0, -1>, 1 pigment { rgb <1, .5, .25> } "
+      "finish { ambient 0 diffuse .5 irid { .4 thickness .3 } } }";
+  expect_measured({
+      {lit, {0.4126039f, 0.2999314f, 0.1457694f}},
+      {"global_settings { irid_wavelength <.35, .26, .24> } light_source { <0, 0, -9> rgb 1 } "
+       "disc { 0, <.6, 0, -1>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse .5 irid { .4 thickness .15 } } }",
+       {0.4126039f, 0.2999314f, 0.1457694f}},
+      {"background { rgb .5 } disc { 0, <.6, 0, -1>, 1 pigment { rgb <1, .5, .25> } "
+       "finish { ambient 0 diffuse 0 reflection .5 irid { .4 thickness .3 } } }",
+       {0.240589f, 0.3497826f, 0.339971f}},
+  });
+  const std::string turbulent =
+      std::string(lit).replace(std::string(lit).find(".3 }"), 4, ".3 turbulence 1 }");
+  EXPECT_NE(middle(turbulent), middle(lit));
+}
+
+TEST(PovModifiers, LightGroupsKeepTheirLight) {
+  const char* const disc = "disc { 0, -z, 1 pigment { rgb 1 } finish { ambient 0 diffuse .5 } }";
+  const std::string red = "light_source { <0, 0, -9> rgb x } ", green = "light_source { <3, 0, -9> rgb y } ";
+  const auto expect = [&](const std::string& text, const Vec3f& color) {
+    const Vec3f seen = middle(text);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], color[k], 4e-5f) << text;
+  };
+  expect(red + "light_group { " + green + disc + " }", {0, 0.474342f, 0});
+  expect(red + "light_group { " + green + disc + " global_lights on }", {0.5f, 0.474342f, 0});
+  expect(red + "light_group { " + green + "sphere { <5, 0, 0>, 1 } } " + disc, {0.5f, 0, 0});
+  expect(red + "union { light_group { " + green + disc + " } rotate 360*z }", {0, 0.474342f, 0});
+  // The transforms of a group move its lights.
+  expect("light_group { light_source { <3, 0, 9> rgb y } " + std::string(disc) + " rotate 180*y }",
+         {0, 0.474342f, 0});
+  // One without objects has nothing to light.
+  expect(red + disc + " light_group { " + green + "}", {0.5f, 0, 0});
+}
+
+// What is open keeps its inside in combinations, and its ends are not seen.
+TEST(PovModifiers, OpenPartsOfCombinations) {
+  const std::string look = " pigment { rgb x } finish { ambient 1 diffuse 0 } ";
+  const std::string wall = "disc { 5*z, -z, 9 pigment { rgb z } finish { ambient 1 diffuse 0 } } ";
+  for (const std::string tube :
+       {"cylinder { -z, z, 1 open", "cone { -z, .5, z, 1 open",
+        "isosurface { function { x*x + y*y - 1 } contained_by { box { -1.5, 1.5 } } open"})
+    for (const std::string around : {"merge { ", "difference { "}) {
+      EXPECT_EQ(middle(wall + around + tube + look + "} box { <3, -1, -1>, <4, 1, 1> } }"), (Vec3f{0, 0, 1}))
+          << tube;
+      EXPECT_EQ(
+          middle(wall + around + tube + look + "} sphere { <0, 0, 1.5>, .2 " + look + "} rotate 90*y }"),
+          (Vec3f{1, 0, 0}))
+          << tube;
+    }
+  // What is taken away there shows its own surface.
+  EXPECT_EQ(middle("difference { sphere { 0, 1 } cylinder { -2*z, 0, .5 open" + look + "} }").x, 0);
+  EXPECT_EQ(middle("difference { cylinder { -z, z, 1 open pigment { rgb y } } sphere { -z, 1" + look + "} }"),
+            (Vec3f{1, 0, 0}));
+}
+
+// The middles of six faces.
+TEST(PovModifiers, BoxesUnfoldTheirImage) {
+  const auto face = [](const std::string& turn) {
+    const Vec3f color = middle(
+        "box { -1, <1, 2, 3> pigment { uv_mapping gradient x color_map { [0 rgb 0] [1 rgb x] } } "
+        "finish { ambient 1 diffuse 0 } translate <0, -.5, -1> " +
+        turn + " }");
+    return std::round(color.x * 1000) / 1000;
+  };
+  EXPECT_EQ(face("rotate 90*y"), 0.625f);
+  EXPECT_EQ(face("rotate 180*y"), 0.375f);
+  EXPECT_EQ(face("rotate -90*y"), 0.125f);
+  EXPECT_EQ(face(""), 0.875f);
+  EXPECT_EQ(face("rotate 90*x"), 0.375f);
+  EXPECT_EQ(face("rotate -90*x"), 0.375f);
+}
+
+TEST(PovModifiers, BlobsBlendManyLooks) {
+  std::string blob = "blob { threshold .4 ";
+  for (int i = 0; i < 40; ++i)
+    blob += "sphere { <" + std::to_string(i - 20) + ", 0, 0>, 1.5, 1 pigment { rgb " +
+            (i == 20              ? "<1, 0, 0>"
+             : i == 19 || i == 21 ? "<0, 1, 0>"
+                                  : "<0, 0, 1>") +
+            " } finish { ambient 1 diffuse 0 } } ";
+  blob += "}";
+  expect_measured({{blob.c_str(), {0.8861219f, 0.1138781f, 0}}});
+}
+
+// Loops and recursive macros add to a union by declaring it again.
+TEST(PovModifiers, UnionsGrowInLoops) {
+  const std::string loop =
+      "#declare All = sphere { 0, 1 } #for (i, 1, 3000) #declare All = union { object { All } ";
+  const std::string grown = scene_of(loop + "sphere { i, 1 } } #end object { All translate x }");
+  std::size_t spheres = 0;
+  for (std::size_t at = 0; (at = grown.find("sphere:", at)) != std::string::npos; ++at) ++spheres;
+  EXPECT_EQ(spheres, 3001u);
+  // One with a look of its own is more than its objects.
+  EXPECT_THROW(scene_of(loop + "sphere { i, 1 } pigment { rgb x } } #end object { All }"), Error);
+}
+
 }  // namespace
 }  // namespace oktett::pov_modifiers_test

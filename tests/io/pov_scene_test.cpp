@@ -565,9 +565,9 @@ TEST(PovScene, WhatCannotBeMeantIsToldOnce) {
   EXPECT_EQ(files.warnings(
                 "#version 3.7;\nsphere { 0, 1 normal { facets coords 1 } }\nsphere { x, 1 normal { facets "
                 "coords 1 } }\n"
-                "intersection { box { -1, 1 } cylinder { 0, y, 1 open } }\n"),
+                "intersection { box { -1, 1 } sor { 4 <1, 0> <1, 1> <2, 2> <2, 3> open } }\n"),
             "scene.pov:2:24: warning: 'facets' in 'normal' has no meaning here: surfaces are smooth\n"
-            "scene.pov:4:30: warning: in combinations objects that are 'open' are closed\n");
+            "scene.pov:4:30: warning: in combinations a sor that is 'open' is closed\n");
 }
 
 /// Whatever it is, what is cut is open where it was cut.

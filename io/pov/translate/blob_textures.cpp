@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -13,8 +14,8 @@
 namespace oktett::pov {
 namespace {
 
-/// Most looks of a blob: textures that show textures may not be nested more deeply.
-constexpr std::size_t kMostLooks = 8;
+/// Most looks of a blob: they are blended in halves, and textures may be nested six deep beside their own.
+constexpr std::size_t kMostLooks = 64;
 
 const Block* block_of(const Element& element) {
   const auto* const block = std::get_if<std::shared_ptr<const Block>>(&element.value);
@@ -51,8 +52,9 @@ class FieldFunction {
     node.op = FunctionNode::Op::call, node.name = name, node.operands = operands;
     return add(std::move(node));
   }
-  Step sum(Step a, Step b) { return call("+", {a, b}); }
-  Step product(Step a, Step b) { return call("*", {a, b}); }
+  Step sum(Step a, Step b) { return is(a, 0) ? b : is(b, 0) ? a : call("+", {a, b}); }
+  Step product(Step a, Step b) { return is(a, 1) ? b : is(b, 1) ? a : call("*", {a, b}); }
+  Step square(Step a) { return call("pow", {a, number(2)}); }
 
   /// The magnitude of the field at (x, y, z).
   Step field(const BlobField& f) {
@@ -72,15 +74,19 @@ class FieldFunction {
       for (int i = 0; i < 3; ++i) p[i] = call("-", {p[i], product(along, number(axis[i]))});
     }
     Step distance = number(0);
-    for (const Step each : p) distance = sum(distance, product(each, each));
+    for (const Step each : p) distance = sum(distance, square(each));
     const Step rest = call(
         "max", {number(0), call("-", {number(1), product(distance, number(1 / (f.radius * f.radius)))})});
-    return product(number(std::abs(f.strength)), product(rest, rest));
+    return product(number(std::abs(f.strength)), square(rest));
   }
 
   std::shared_ptr<const Function> finish() { return std::make_shared<const Function>(std::move(function_)); }
 
  private:
+  bool is(Step a, double value) const {
+    const FunctionNode& node = function_.nodes[a];
+    return node.op == FunctionNode::Op::constant && node.number == value;
+  }
   Step add(FunctionNode node) {
     function_.nodes.push_back(std::move(node));
     return static_cast<Step>(function_.nodes.size() - 1);
@@ -102,21 +108,43 @@ std::shared_ptr<Block> texture_block(const Block& of) {
   return block;
 }
 
-/// What part of the fields up to group `last` is that of group `last`.
-std::shared_ptr<const Function> share_of(const Place& where, const std::vector<Group>& groups,
-                                         std::size_t last) {
+/// What part of the fields of all groups is that of those from `middle` on.
+std::shared_ptr<const Function> share_of(const Place& where, std::span<const Group> groups,
+                                         std::size_t middle) {
   FieldFunction f(where);
-  const auto total = [&](const Group& group) {
+  const auto total = [&](std::span<const Group> some) {
     auto all = f.number(0);
-    for (const BlobField& field : group.fields) all = f.sum(all, f.field(field));
+    for (const Group& group : some)
+      for (const BlobField& field : group.fields) all = f.sum(all, f.field(field));
     return all;
   };
-  auto all = f.number(0);
-  for (std::size_t i = 0; i < last; ++i) all = f.sum(all, total(groups[i]));
-  const auto own = total(groups[last]);
+  const auto first = total(groups.first(middle)), second = total(groups.subspan(middle));
   // Where no field of these is, the quotient must be some number; a share of 1 would be one of 0 again.
-  f.product(f.number(1 - 1e-7), f.call("/", {own, f.call("max", {f.sum(all, own), f.number(1e-30)})}));
+  f.product(f.number(1 - 1e-7),
+            f.call("/", {second, f.call("max", {f.sum(first, second), f.number(1e-30)})}));
   return f.finish();
+}
+
+/// The looks of groups, weighted by their fields.
+std::shared_ptr<const Block> blended(const Block& blob, std::span<const Group> groups) {
+  if (groups.size() == 1) return groups[0].texture;
+  const std::size_t middle = (groups.size() + 1) / 2;
+  auto map = std::make_shared<Block>();
+  map->keyword = "texture_map", map->where = blob.where;
+  const auto entry = [&](double at, const std::shared_ptr<const Block>& texture) {
+    auto block = std::make_shared<Block>();
+    block->keyword = "[", block->where = blob.where;
+    Numbers place{};
+    place.v[0] = at;
+    block->elements.push_back({blob.where, place});
+    block->elements.push_back({blob.where, texture});
+    map->elements.push_back({blob.where, std::shared_ptr<const Block>(block)});
+  };
+  entry(0, blended(blob, groups.first(middle))), entry(1, blended(blob, groups.subspan(middle)));
+  auto texture = texture_block(blob);
+  texture->elements.push_back({blob.where, share_of(blob.where, groups, middle)});
+  texture->elements.push_back({blob.where, std::shared_ptr<const Block>(map)});
+  return texture;
 }
 
 /// The look with its own elements that `blob` has, without its transforms.
@@ -189,26 +217,7 @@ std::shared_ptr<const Block> blended_texture(Context& context, const Block& blob
   }
   for (Group& group : groups)
     if (group.texture == nullptr) group.texture = texture_of_blob(blob);
-  std::shared_ptr<const Block> look = groups[0].texture;
-  for (std::size_t i = 1; i < groups.size(); ++i) {
-    auto map = std::make_shared<Block>();
-    map->keyword = "texture_map", map->where = blob.where;
-    const auto entry = [&](double at, const std::shared_ptr<const Block>& texture) {
-      auto block = std::make_shared<Block>();
-      block->keyword = "[", block->where = blob.where;
-      Numbers place{};
-      place.v[0] = at;
-      block->elements.push_back({blob.where, place});
-      block->elements.push_back({blob.where, texture});
-      map->elements.push_back({blob.where, std::shared_ptr<const Block>(block)});
-    };
-    entry(0, look), entry(1, groups[i].texture);
-    auto texture = texture_block(blob);
-    texture->elements.push_back({blob.where, share_of(blob.where, groups, i)});
-    texture->elements.push_back({blob.where, std::shared_ptr<const Block>(map)});
-    look = texture;
-  }
-  return look;
+  return blended(blob, groups);
 }
 
 }  // namespace oktett::pov

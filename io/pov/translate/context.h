@@ -45,6 +45,10 @@ struct Context {
   SceneGamma gamma;                  ///< in which light is computed
   std::uint32_t samples = 0;         ///< per pixel, that the camera asks for; 0: it asks for none
   bool has_fog = false;              ///< or media: it matters which solids are hollow
+  std::vector<Node> light_keys;      ///< what describes each of the lights
+  double film_scale = 1;             ///< of the thickness of films
+  int light_groups = 0;
+  std::vector<std::string> lit_alone;  ///< names of light groups that no other lights light
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
   /// declaration.
   std::map<const Block*, std::array<Vec3d, 2>> extents;

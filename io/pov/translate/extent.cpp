@@ -45,14 +45,15 @@ Extent Extent::moved(const Affine& map) const {
 }
 
 bool is_object(std::string_view keyword) {
-  constexpr std::array<std::string_view, 35> kObjects{
-      "sphere", "box",           "cylinder",       "cone",       "plane",
-      "disc",   "torus",         "quadric",        "cubic",      "quartic",
-      "poly",   "polynomial",    "superellipsoid", "blob",       "lathe",
-      "sor",    "prism",         "polygon",        "triangle",   "smooth_triangle",
-      "mesh",   "mesh2",         "height_field",   "isosurface", "julia_fractal",
-      "text",   "bicubic_patch", "sphere_sweep",   "parametric", "object",
-      "union",  "merge",         "intersection",   "difference", "ovus"};
+  constexpr std::array<std::string_view, 36> kObjects{
+      "sphere",     "box",           "cylinder",       "cone",       "plane",
+      "disc",       "torus",         "quadric",        "cubic",      "quartic",
+      "poly",       "polynomial",    "superellipsoid", "blob",       "lathe",
+      "sor",        "prism",         "polygon",        "triangle",   "smooth_triangle",
+      "mesh",       "mesh2",         "height_field",   "isosurface", "julia_fractal",
+      "text",       "bicubic_patch", "sphere_sweep",   "parametric", "object",
+      "union",      "merge",         "intersection",   "difference", "ovus",
+      "light_group"};
   return std::ranges::find(kObjects, keyword) != kObjects.end();
 }
 
@@ -133,17 +134,22 @@ Extent shape_extent(Context& context, Arguments& a) {
   }
   if (kind == "height_field") return {{0, 0, 0}, {1, 1, 1}};
   if (kind == "union" || kind == "merge" || kind == "object" || kind == "intersection" ||
-      kind == "difference" || kind == "clipped_by" || kind == "bounded_by") {
+      kind == "difference" || kind == "light_group" || kind == "clipped_by" || kind == "bounded_by") {
     // What cuts or bounds is what several objects have in common.
     const bool meets = kind == "intersection" || kind == "clipped_by" || kind == "bounded_by";
     Extent all = meets ? Extent{} : nothing;
-    for (bool first = true; const Block* const inner = a.peek_block(); first = false) {
+    bool first = true;
+    while (const Block* const inner = a.peek_block()) {
+      if (inner->keyword == "light_source") {
+        a.take();
+        continue;
+      }
       if (!is_object(inner->keyword)) break;
       if (meets)
         all = all.meet(extent_of(context, *inner));
       else if (first || kind != "difference")
         all = all.join(extent_of(context, *inner));
-      a.take();
+      a.take(), first = false;
     }
     return all;
   }

@@ -23,6 +23,8 @@ class FinishReader {
           read(*inner, f);
         else if (inner->keyword == "reflection")
           read_reflection(*inner, f);
+        else if (inner->keyword == "irid")
+          read_irid(*inner, f);
         else
           tell(inner->keyword, inner->where);
         a.take();
@@ -34,7 +36,7 @@ class FinishReader {
       read_word(word, where, a, f, albedos);
     }
     // So that this part of the light leaves again, however it is spread (POV-Ray 3.7, measured).
-    if (albedos.diffuse) f.diffuse *= (f.brilliance + 1) / 2;
+    if (albedos.diffuse) f.diffuse *= (f.brilliance + 1) / 2, f.diffuse_back *= (f.brilliance + 1) / 2;
     if (albedos.phong) f.phong *= (f.phong_size + 1) / 2;
     if (const double n = 1 / std::max(f.roughness, 1e-6); albedos.specular)
       f.specular *= (n + 2) / (4 * (2 - portable::exp2(-n / 2)));
@@ -59,8 +61,7 @@ class FinishReader {
     else if (word == "diffuse") {
       albedos.diffuse = a.take_word("albedo");
       f.diffuse = a.number("a number");
-      if (a.is_numbers())
-        a.take(), context_.tell("diffuse back", where, "light on the back of surfaces is left out");
+      f.diffuse_back = a.is_numbers() ? std::max(0.0, a.number("a number")) : 0;
     } else if (word == "phong")
       albedos.phong = a.take_word("albedo"), f.phong = a.number("a number");
     else if (word == "phong_size")
@@ -122,6 +123,21 @@ class FinishReader {
     // By Fresnel's equations a single colour is that at grazing angles.
     if (f.fresnel && colors.size() == 1) f.reflection = {0, 0, 0};
     f.varies = !(f.reflection == f.reflection_max);
+  }
+
+  /// A thin film.
+  void read_irid(const Block& block, Finish& f) {
+    Arguments a(context_, block);
+    while (!a.at_end()) {
+      if (a.is_numbers())
+        f.irid = std::max(0.0, a.number("a number"));
+      else if (a.take_word("thickness"))
+        f.film_thickness = std::max(0.0, a.number("a number"));
+      else if (a.take_word("turbulence"))
+        f.film_turbulence = std::clamp(a.number("a number"), 0.0, 1.0);
+      else
+        a.take();
+    }
   }
 
   Context& context_;

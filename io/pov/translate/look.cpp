@@ -36,8 +36,9 @@ bool is_transparent(const Look& look) {
 /// Writes a look as a material. What differs between the textures of a pattern is a texture in it.
 class MaterialWriter {
  public:
-  MaterialWriter(Context& context, const Place& where)
-      : context_(context), tree_(context.tree), where_(where) {}
+  /// `lit_behind`: lamps light both sides alike.
+  MaterialWriter(Context& context, const Place& where, bool lit_behind = false)
+      : context_(context), tree_(context.tree), where_(where), lit_behind_(lit_behind) {}
 
   /// `medium`: the name of what fills solids; empty: nothing does.
   Node write(const Look& look, const Interior& interior, const std::string& medium) {
@@ -56,9 +57,13 @@ class MaterialWriter {
     if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
     tree_.put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }));
+    const auto back_of = [this](const Finish& f) { return lit_behind_ ? f.diffuse : f.diffuse_back; };
+    if (any(look, [&](const Finish& f) { return back_of(f) > 0; }))
+      tree_.put(map, "diffuse_back", weight(look, back_of));
     put_unevenness(map, look);
     put_highlight(map, look);
     put_reflection(map, look);
+    put_film(map, look);
     double ior = interior.ior;
     for_each_plain(look, [&](const Look& l) { ior = l.finish.ior.value_or(ior); });
     if (!(ior > 0)) ior = 1;
@@ -89,7 +94,8 @@ class MaterialWriter {
   static double straight(const Look& look, const Interior& interior, const std::string& medium) {
     if (!look.is_plain() || !is_solid(look.pigment) || !medium.empty()) return 0;
     const Finish& f = look.finish;
-    const bool is_dull = f.phong <= 0 && f.specular <= 0 && !mirrors(f) && f.emission == Vec3d{0, 0, 0};
+    const bool is_dull =
+        f.irid <= 0 && f.phong <= 0 && f.specular <= 0 && !mirrors(f) && f.emission == Vec3d{0, 0, 0};
     const PovColor& c = look.pigment.solid;
     if (!is_dull || f.ior.value_or(interior.ior) != 1 || c.filter != 0) return 0;
     return std::clamp(c.transmit, 0.0, 1.0);
@@ -255,10 +261,35 @@ class MaterialWriter {
     }
     const auto tinted = [](const Finish& f) { return f.metallic > 0 && (f.phong > 0 || f.specular > 0); };
     if (any(look, tinted))
-      tree_.put(map, "specular_color", of_shown_layer(look, [&](const Look& l) {
-                  return pigment_node(context_, where_, l.pigment,
-                                      {[&](const PovColor& c) { return tint(l.finish.metallic, c.rgb); }});
-                }));
+      tree_.put(map, "specular_color",
+                of_shown_layer(look,
+                               [&](const Look& l) {
+                                 return pigment_node(context_, where_, l.pigment, {[&](const PovColor& c) {
+                                                       return tint(l.finish.metallic, c.rgb);
+                                                     }});
+                               })),
+          tree_.put(map, "specular_fades", tree_.flag(where_, true));
+  }
+
+  /// The colours of a thin film.
+  void put_film(Node map, const Look& look) {
+    if (!any(look, [](const Finish& f) { return f.irid > 0; })) return;
+    if (!put_unless_zero(map, "film", number(look, [](const Look& l) { return l.finish.irid; }))) return;
+    tree_.put(map, "film_thickness",
+              of_shown_layer(look, [&](const Look& l) { return thickness(l.finish); }));
+  }
+
+  /// That of a film in nanometres, which turbulence changes from place to place.
+  Node thickness(const Finish& f) {
+    const double mean = f.film_thickness * context_.film_scale * 1000;
+    if (!(f.film_turbulence > 0)) return tree_.number(where_, mean);
+    const Node noise = tree_.map(where_), list = tree_.list(where_);
+    tree_.put(noise, "octaves", tree_.number(where_, 5));
+    for (const double at : {0.0, 1.0})
+      push_entry(tree_, where_, list, at,
+                 tree_.number(where_, mean * (1 + (2 * at - 1) * f.film_turbulence)));
+    tree_.put(noise, "map", list);
+    return tree_.map(where_, "noise", noise);
   }
 
   /// How light of lamps falls off and is grained.
@@ -296,9 +327,10 @@ class MaterialWriter {
     put_growth(map, look);
     if (any(look, [](const Finish& f) { return f.conserves; }))
       tree_.put(map, "conserve_energy", tree_.flag(where_, true));
+    if (any(look, [](const Finish& f) { return f.reflection_metallic > 0; }))
+      tree_.put(map, "reflection_fades", tree_.flag(where_, true));
     const auto is_colored = [](const Finish& f) { return !(hue_of(f, {0, 0.5, 1}) == Vec3d{1, 1, 1}); };
-    const bool tints_highlights =
-        std::ranges::any_of(map->items, [](const YamlNode* item) { return item->text == "specular_color"; });
+    const bool tints_highlights = has_key(*map, "specular_color");
     if (!any(look, is_colored) && !tints_highlights) return;
     tree_.put(map, "reflection_color", of_shown_layer(look, [&](const Look& l) {
                 return pigment_node(context_, where_, l.pigment,
@@ -325,6 +357,7 @@ class MaterialWriter {
   Context& context_;
   Tree& tree_;
   Place where_;
+  bool lit_behind_;
 };
 
 }  // namespace
@@ -401,7 +434,8 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
     is_moved |= !(item.to_texture == Affine{}) || item.by_uv;
   }
   const auto key = std::tuple(blocks, static_cast<const Block*>(dress.interior.get()),
-                              static_cast<const Block*>(default_texture.get()), uv_shape(dress.shape).word);
+                              static_cast<const Block*>(default_texture.get()), uv_shape(dress.shape).word,
+                              dress.lit_behind);
   Interior interior;
   if (dress.interior) read_interior(context_, *dress.interior, interior);
   const bool is_placed = is_moved || interior.fills() || !dress.back.empty();
@@ -410,7 +444,7 @@ Node Wardrobe::material(const Dress& dress, const std::shared_ptr<const Block>& 
   Look look = look_of(context_, dress.items, default_texture);
   look.lay(uv_shape(dress.shape).uv);
   const std::string medium = dress.solid ? media_.name(interior, dress.interior_to_world, dress.hollow) : "";
-  const Node node = MaterialWriter(context_, where).write(look, interior, medium);
+  const Node node = MaterialWriter(context_, where, dress.lit_behind).write(look, interior, medium);
   if (!dress.back.empty()) {
     Dress back;
     back.items = dress.back, back.interior = dress.interior;

@@ -23,6 +23,7 @@ struct Dress {
   Affine interior_to_world;  ///< from the space of the interior
   bool hollow = false;       ///< so that media show
   bool solid = true;         ///< else nothing fills it
+  bool lit_behind = false;   ///< lamps light both sides
 
   bool has_texture() const { return !items.empty(); }
   /// A map from a space before that of the object to it.
@@ -50,7 +51,8 @@ class Wardrobe {
   Context& context_;
   MediaWriter media_;
   std::map<std::string, std::string> names_;  ///< by what the material says
-  std::map<std::tuple<std::vector<const Block*>, const Block*, const Block*, std::string_view>, std::string>
+  std::map<std::tuple<std::vector<const Block*>, const Block*, const Block*, std::string_view, bool>,
+           std::string>
       known_;
   std::set<std::string> taken_;
 };

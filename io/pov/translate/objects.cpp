@@ -15,6 +15,8 @@ namespace oktett::pov {
 /// A declared object of so many shapes stands once if it is used more than once; in combinations, where
 /// instances cost more, one of that many.
 static constexpr int kInstanceWeight = 4, kOperandWeight = 100;
+/// Scene files have 16 lists of what lights light, one of which is that of lights outside of groups.
+static constexpr int kMostLightGroups = 15;
 
 struct ObjectWriter::Modifiers {
   Moves moves;
@@ -25,8 +27,9 @@ struct ObjectWriter::Modifiers {
   std::vector<Clip> clips, bounds;
   Dress own;
   bool no_shadow = false, no_image = false, no_reflection = false, inverse = false;
-  bool hollow = false;
-  Affine before_interior;  ///< transforms that stand before the interior
+  bool hollow = false, lit_behind = false;
+  bool lit_by_all = false;  ///< of a light_group: by the lights outside, too
+  Affine before_interior;   ///< transforms that stand before the interior
   bool changes_look() const { return own.has_texture() || own.interior != nullptr; }
   bool hides() const { return no_shadow || no_image || no_reflection; }
 };
@@ -117,7 +120,8 @@ void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& m
     if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&block->elements[0].value);
         inner != nullptr && *inner != nullptr)
       name = (*inner)->name;
-  if (!name.empty()) tree.put(node, "name", tree.text(where, context_.unique(object_names_, name)));
+  if (!name.empty() && !has_key(*node, "name"))
+    tree.put(node, "name", tree.text(where, context_.unique(object_names_, name)));
   Tree::push(context_.objects, node);
 }
 
@@ -205,7 +209,7 @@ static Block continued(const Block& object, const Block& behind) {
 ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& outer) {
   const std::string_view k = block.keyword;
   Arguments arguments(context_, block);
-  const bool is_union = k == "union" || k == "merge";
+  const bool is_union = k == "union" || k == "merge" || k == "light_group";
   const bool is_combination = is_union || k == "intersection" || k == "difference";
   if (!is_combination && k != "object") return build_shape(block, outer, arguments);
   std::vector<std::shared_ptr<const Block>> children;
@@ -233,6 +237,7 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
     around.within = outer.within.meet(limits_of(context_, block, "bounded_by").moved(m.moves.all));
     return build_object(continued(*children[0], rest), around);
   }
+  if (k == "light_group") return build_light_group(block, children, m, outer);
   return build_children(block, children, m, outer);
 }
 
@@ -304,12 +309,12 @@ ObjectWriter::Modifiers ObjectWriter::read_modifiers(const Block& block, Argumen
       m.hollow = a.flag();
     else if (a.take_word("uv_mapping"))
       by_uv = a.flag();
-    else if (a.take_word("double_illuminate")) {
-      if (a.flag())
-        context_.tell("double_illuminate", where,
-                      "'double_illuminate' has no meaning here: lamps light one side");
-    } else if (a.take_word("sturm") || a.take_word("hierarchy") || a.take_word("open") ||
-               a.take_word("no_radiosity") || a.take_word("split_union") || a.take_word("cutaway_textures"))
+    else if (a.take_word("double_illuminate"))
+      m.lit_behind = a.flag();
+    else if (a.take_word("global_lights"))
+      m.lit_by_all = a.flag();
+    else if (a.take_word("sturm") || a.take_word("hierarchy") || a.take_word("open") ||
+             a.take_word("no_radiosity") || a.take_word("split_union") || a.take_word("cutaway_textures"))
       a.flag();
     else
       a.take();
@@ -349,6 +354,7 @@ Dress ObjectWriter::dress_of(const Modifiers& m, const Outer& outer) const {
   if (m.own.has_texture()) dress.items = m.own.items, dress.back = m.own.back;
   if (!m.own.back.empty()) dress.back = m.own.back;
   if (m.hollow) dress.hollow = true;
+  if (m.lit_behind) dress.lit_behind = true;
   if (!m.own.interior) return dress;
   dress.interior = m.own.interior;
   const Affine whole = outer.to_world * m.moves.all;
@@ -492,12 +498,40 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
                 {nodes.size() == 1 ? nodes[0] : list_node(block.where, "group", nodes), solid, false}, false);
 }
 
+ObjectWriter::Maybe ObjectWriter::build_light_group(const Block& block,
+                                                    const std::vector<std::shared_ptr<const Block>>& children,
+                                                    const Modifiers& m, const Outer& outer) {
+  Tree& tree = context_.tree;
+  const std::size_t before = context_.light_keys.size();
+  const Maybe built = build_children(block, children, m, outer);
+  if (asked_) return built;
+  if (!built) context_.lights->items.resize(before), context_.light_keys.resize(before);
+  if (!built || outer.operand || context_.light_groups == kMostLightGroups) {
+    if (built)
+      context_.tell("light_group", block.where,
+                    fmt::format("in combinations, and beyond {} of them, lights of a 'light_group' light all "
+                                "objects",
+                                kMostLightGroups));
+    return built;
+  }
+  ++context_.light_groups;
+  const std::string name = context_.unique(object_names_, "light_group");
+  for (std::size_t i = before; i < context_.light_keys.size(); ++i) {
+    const Node keys = context_.light_keys[i], list = tree.list(block.where);
+    if (has_key(*keys, "only")) continue;
+    Tree::push(list, tree.text(block.where, name));
+    tree.put(keys, "only", list);
+  }
+  if (!m.lit_by_all) context_.lit_alone.push_back(name);
+  Built group{list_node(block.where, "group", {built->node}), built->solid, built->negative};
+  tree.put(group.node, "name", tree.text(block.where, name));
+  return group;
+}
+
 /// Adds transforms behind those that an object of scene files has.
 void ObjectWriter::add_moves(Node object, const Moves& moves, const Place& where) {
   if (moves.empty()) return;
-  const bool has_own =
-      std::ranges::any_of(object->items, [](const YamlNode* n) { return n->text == "transform"; });
-  if (has_own)
+  if (has_key(*object, "transform"))
     extend_transform(object, moves);
   else
     context_.tree.put(object, "transform", moves_node(context_.tree, where, moves));
@@ -554,8 +588,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
 
 /// Fog is in all that the node shows.
 void ObjectWriter::set_hollow(Node object, const Place& where) {
-  const auto is_key = [](const YamlNode* n) { return n->text == "hollow"; };
-  if (std::ranges::any_of(object->items, is_key)) return;
+  if (has_key(*object, "hollow")) return;
   context_.tree.put(object, "hollow", context_.tree.flag(where, true));
 }
 

@@ -65,6 +65,9 @@ class ObjectWriter {
   Maybe build_shape(const Block& block, const Outer& outer, Arguments& arguments);
   Maybe build_children(const Block& block, const std::vector<std::shared_ptr<const Block>>& children,
                        const Modifiers& m, const Outer& outer);
+  /// A union whose lights light nothing else.
+  Maybe build_light_group(const Block& block, const std::vector<std::shared_ptr<const Block>>& children,
+                          const Modifiers& m, const Outer& outer);
   Maybe build_instance(const std::shared_ptr<const Block>& block, const Outer& outer);
   std::vector<Built> build_all(const std::vector<std::shared_ptr<const Block>>& children, const Outer& outer);
   void read_material(const Block& block, const std::shared_ptr<const Block>& default_texture,

@@ -88,11 +88,11 @@ class ShapeMaker {
     return std::nullopt;
   }
 
-  /// `open` has no inside; where one is needed, the solid stands for it.
+  /// Of a sor: `open` has no inside; where one is needed, the solid stands for it.
   bool is_open() {
     if (!has_word(a_.block(), "open")) return false;
     if (!closes_) return true;
-    context_.tell("open operand", where_, "in combinations objects that are 'open' are closed");
+    context_.tell("open operand", where_, "in combinations a sor that is 'open' is closed");
     return false;
   }
 
@@ -122,29 +122,97 @@ class ShapeMaker {
       tree_.put(keys, "vertices", corners);
       return one("polygon", keys, false);
     }
+    if (flat == 0 && looks_by_uv(a_.block())) return unfolded_box(min(p, q), max(p, q));
     tree_.put(keys, "min", vector(min(p, q))), tree_.put(keys, "max", vector(max(p, q)));
     return one("box", keys);
   }
 
+  /// Whether a look in a block lies by u and v.
+  static bool looks_by_uv(const Block& block) {
+    return has_word(block, "uv_mapping") || std::ranges::any_of(block.elements, [](const Element& e) {
+             const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+             return inner != nullptr && *inner != nullptr && looks_by_uv(**inner);
+           });
+  }
+
+  /// A box of triangles, whose faces lie side by side in an image as POV-Ray unfolds them: in four columns
+  /// the sides of -x, +z, +x and -z, with +y above and -y below the second.
+  Shapes unfolded_box(const Vec3d& lo, const Vec3d& hi) {
+    MeshMaker maker;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const bool upper : {false, true}) {
+        const std::size_t across = (axis + 1) % 3, along = (axis + 2) % 3;
+        const auto corner = [&](bool right, bool above) {
+          std::array<double, 3> part{};
+          part[axis] = upper, part[across] = right, part[along] = above;
+          const Vec3d p{part[0], part[1], part[2]};
+          return MeshCorner{{p.x > 0 ? hi.x : lo.x, p.y > 0 ? hi.y : lo.y, p.z > 0 ? hi.z : lo.z},
+                            std::nullopt,
+                            unfolded(axis, upper, p)};
+        };
+        // Counterclockwise seen from outside.
+        const MeshCorner a = corner(false, false), b = corner(upper, !upper), c = corner(true, true),
+                         d = corner(!upper, upper);
+        maker.add({a, b, c}), maker.add({a, c, d});
+      }
+    return mesh({{{std::move(maker), nullptr}}, true});
+  }
+
+  /// Where a point of a face of the unit cube lies in an image.
+  static std::array<double, 2> unfolded(std::size_t axis, bool upper, const Vec3d& p) {
+    constexpr double kColumn = 1.0 / 4, kRow = 1.0 / 3;
+    if (axis == 1) return {(1 + p.x) * kColumn, (upper ? 3 - p.z : p.z) * kRow};
+    const double column = axis == 0 ? (upper ? 3 - p.z : p.z) : (upper ? 1 + p.x : 4 - p.x);
+    return {column * kColumn, (1 + p.y) * kRow};
+  }
+
   Shapes cylinder() {
-    const Node keys = map();
-    tree_.put(keys, "from", vector(a_.vector("an end")));
-    tree_.put(keys, "to", vector(a_.vector("an end")));
-    tree_.put(keys, "radius", number(std::abs(a_.number("the radius"))));
-    const bool open = is_open();
-    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
-    return one("cylinder", keys, !open);
+    const Vec3d from = a_.vector("an end"), to = a_.vector("an end");
+    const double radius = std::abs(a_.number("the radius"));
+    return tube("cylinder", {from, to}, radius, radius);
   }
 
   Shapes cone() {
-    const Node keys = map();
-    tree_.put(keys, "from", vector(a_.vector("an end")));
-    tree_.put(keys, "from_radius", number(std::abs(a_.number("a radius"))));
-    tree_.put(keys, "to", vector(a_.vector("an end")));
-    tree_.put(keys, "to_radius", number(std::abs(a_.number("a radius"))));
-    const bool open = is_open();
-    if (open) tree_.put(keys, "open", tree_.flag(where_, true));
-    return one("cone", keys, !open);
+    const Vec3d from = a_.vector("an end");
+    const double radius = std::abs(a_.number("a radius"));
+    const Vec3d to = a_.vector("an end");
+    return tube("cone", {from, to}, radius, std::abs(a_.number("a radius")));
+  }
+
+  /// A cylinder or a cone between two ends of these radii.
+  Shapes tube(const char* kind, const std::array<Vec3d, 2>& ends, double first, double last) {
+    const bool is_cone = std::string_view(kind) == "cone", is_open = has_word(a_.block(), "open");
+    const auto node = [&](const std::array<Vec3d, 2>& of, const std::array<double, 2>& radii) {
+      const Node keys = map();
+      tree_.put(keys, "from", vector(of[0]));
+      if (is_cone) tree_.put(keys, "from_radius", number(radii[0]));
+      tree_.put(keys, "to", vector(of[1]));
+      tree_.put(keys, is_cone ? "to_radius" : "radius", number(radii[1]));
+      return keys;
+    };
+    const Vec3d along = ends[1] - ends[0];
+    if (!is_open || !closes_ || !(length(along) > 0)) {
+      const Node keys = node(ends, {first, last});
+      if (is_open && !closes_) tree_.put(keys, "open", tree_.flag(where_, true));
+      return one(kind, keys, !is_open || closes_);
+    }
+    // Where an inside is needed, a longer one that planes cut off without being seen; a cone up to half of
+    // the way to its apex.
+    const auto more = [](double here, double there) {
+      return here < there ? std::min(0.5, 0.5 * here / (there - here)) : 0.5;
+    };
+    const double before = more(first, last), behind = more(last, first);
+    Shapes shapes = one(kind, node({ends[0] - along * before, ends[1] + along * behind},
+                                   {first - (last - first) * before, last + (last - first) * behind}));
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3d normal = along * (side / length(along));
+      const Node plane = map();
+      tree_.put(plane, "normal", vector(normal));
+      tree_.put(plane, "offset", number(dot(normal, ends[side > 0])));
+      shapes.parts.push_back({"plane", plane, nullptr, {}, true});
+    }
+    shapes.meet = true;
+    return shapes;
   }
 
   Shapes plane() {
@@ -358,11 +426,12 @@ class ShapeMaker {
     if (!text) return std::nullopt;
     if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
       return left_out("what contains the isosurface has no volume");
-    const bool open = is_open();
-    // The sphere at which an open surface ends is not seen.
-    const bool cut = radius > 0 && open;
+    const bool open = has_word(a_.block(), "open");
+    // What an open surface ends at is not seen: a sphere, or a box where an inside is needed.
+    const bool cut = open && (radius > 0 || closes_);
+    const Vec3d least = lo, greatest = hi;
     if (cut) {
-      const Vec3d room{radius * 0.01, radius * 0.01, radius * 0.01};
+      const Vec3d room = (hi - lo) * 0.005;
       lo = lo - room, hi = hi + room;
     }
     const Node keys = map();
@@ -374,6 +443,11 @@ class ShapeMaker {
       const Node ball = map();
       tree_.put(ball, "center", vector(center)), tree_.put(ball, "radius", number(radius));
       shapes.parts.push_back({"sphere", ball, nullptr, {}, cut});
+      shapes.meet = true;
+    } else if (cut) {
+      const Node box = map();
+      tree_.put(box, "min", vector(least)), tree_.put(box, "max", vector(greatest));
+      shapes.parts.push_back({"box", box, nullptr, {}, true});
       shapes.meet = true;
     }
     return shapes;

@@ -62,16 +62,21 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
     return Tree::push(s.rainbows, bow);
   }
   if (k == "media") return read_media(context, *block, s.interior.media.emplace_back());
-  if (k == "light_group") {
-    context.tell("light_group", block->where, "lights of a 'light_group' light all objects");
-    for (const Element& e : block->elements)
-      if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value))
-        if (*inner && (is_object((*inner)->keyword) || (*inner)->keyword == "light_source"))
-          read_statement(context, *inner, objects, s);
-    return;
-  }
   if (k == "camera") return;
   context.tell(std::string(k), block->where, fmt::format("'{}' has no meaning here, and is left out", k));
+}
+
+/// Lights outside of light groups do not light these, unless their `global_lights` are on.
+void darken_light_groups(Context& context) {
+  if (context.lit_alone.empty()) return;
+  Tree& tree = context.tree;
+  const Place top;
+  for (const Node keys : context.light_keys) {
+    if (has_key(*keys, "only")) continue;
+    const Node list = tree.list(top);
+    for (const std::string& name : context.lit_alone) Tree::push(list, tree.text(top, name));
+    tree.put(keys, "except", list);
+  }
 }
 
 /// A tree without settings: of what its sections hold.
@@ -178,6 +183,7 @@ TranslatedScene translate(const Document& document, const TranslateOptions& opti
   if (!context.media->items.empty()) tree.put(root, "media", context.media);
   if (!around.empty()) tree.put(root, "medium", tree.text(top, around));
   if (!context.materials->items.empty()) tree.put(root, "materials", context.materials);
+  darken_light_groups(context);
   tree.put(root, "lights", context.lights);
   if (!context.define->items.empty()) tree.put(root, "define", context.define);
   tree.put(root, "objects", context.objects);

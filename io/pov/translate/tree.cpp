@@ -70,4 +70,10 @@ void Tree::put(Node map, std::string_view key, Node value) {
   map->items.push_back(name), map->items.push_back(value);
 }
 
+bool has_key(const YamlNode& map, std::string_view key) {
+  for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
+    if (map.items[i]->text == key) return true;
+  return false;
+}
+
 }  // namespace oktett::pov

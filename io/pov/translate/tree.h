@@ -56,4 +56,7 @@ class Tree {
   std::vector<std::unique_ptr<YamlFile>> files_;
 };
 
+/// Whether a map has an entry of this name.
+bool has_key(const YamlNode& map, std::string_view key);
+
 }  // namespace oktett::pov

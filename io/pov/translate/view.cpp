@@ -400,6 +400,7 @@ LightBody add_light(Context& context, const Block& block, const Affine& to_world
       tree.put(keys, "color", color_node(tree, where, rgb * part));
       put_light(tree, where, light, keys);
       Tree::push(context.lights, tree.map(where, kind, keys));
+      context.light_keys.push_back(keys);
     }
   body.moves = light.body_moves;
   return body;
@@ -421,6 +422,10 @@ void read_global_settings(Context& context, const Block& block, Surroundings& s)
       s.adc_bailout = a.number("a number");
     } else if (a.take_word("ambient_light")) {
       s.ambient = a.vector("a colour");
+    } else if (a.take_word("irid_wavelength")) {
+      // Only what the thickness is to the wavelength matters.
+      const Vec3d lengths = a.vector("wavelengths");
+      if (lengths.y > 0) context.film_scale = 0.52 / lengths.y;
     } else if (const Block* const inner = a.peek_block()) {
       a.take();
       const std::string_view k = inner->keyword;
