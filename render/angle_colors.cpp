@@ -17,8 +17,8 @@ Color film_color(double weight, double thickness, double cosines) {
   constexpr double kWavelengths[] = {700, 520, 480};
   Color color;
   for (int k = 0; k < 3; ++k)
-    color[k] = static_cast<float>(
-        1 + weight * portable::cos(2 * std::numbers::pi * thickness * cosines / kWavelengths[k]));
+    color[k] = static_cast<float>(std::max(
+        0.0, 1 + weight * portable::cos(2 * std::numbers::pi * thickness * cosines / kWavelengths[k])));
   return color;
 }
 

@@ -15,8 +15,8 @@ inline Color faded(const Color& color, double part) {
 }
 
 /// By what a thin film on a surface multiplies light, as POV-Ray's `irid` does: 1 + weight * cos(2 pi *
-/// thickness * cosines / wavelength), with wavelengths of 700, 520 and 480 nanometres, in which the thickness
-/// is given. `cosines` is the sum of those between the normal and both directions of the light.
+/// thickness * cosines / wavelength) or 0, with wavelengths of 700, 520 and 480 nanometres, in which the
+/// thickness is given. `cosines` is the sum of those between the normal and both directions of the light.
 Color film_color(double weight, double thickness, double cosines);
 
 }  // namespace oktett
