@@ -324,6 +324,18 @@ TEST(PovModifiers, BoxesUnfoldTheirImage) {
   EXPECT_EQ(face(""), 0.875f);
   EXPECT_EQ(face("rotate 90*x"), 0.375f);
   EXPECT_EQ(face("rotate -90*x"), 0.375f);
+  // What is mirrored before it is turned shows the same image.
+  const auto left = [](const std::string& moves) {
+    const Vec3f color = middle(
+        "box { -1, 1 pigment { uv_mapping gradient x color_map { [0 rgb 0] [1 rgb x] } } "
+        "finish { ambient 1 diffuse 0 } " +
+        moves + " translate x/2 }");
+    return std::round(color.x * 10000) / 10000;
+  };
+  EXPECT_EQ(left(""), 0.9375f);
+  EXPECT_EQ(left("scale <-1, 1, 1>"), 0.9375f);
+  EXPECT_EQ(left("rotate 180*x scale <-1, 1, 1>"), 0.4375f);
+  EXPECT_EQ(left("scale <-1, 1, 1> rotate 180*x"), 0.3125f);
 }
 
 TEST(PovModifiers, BlobsBlendManyLooks) {

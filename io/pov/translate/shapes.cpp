@@ -135,20 +135,37 @@ class ShapeMaker {
            });
   }
 
+  /// Along which axes a box is mirrored before it is turned: POV-Ray moves its corners until then, and
+  /// unfolds what they have become.
+  std::array<bool, 3> mirrored_axes() const {
+    std::array<bool, 3> axes{};
+    Moves moves;
+    Arguments scan(context_, a_.block());
+    while (!scan.at_end())
+      if (!take_moves(context_, scan, moves)) scan.take();
+    for (const Move& move : moves.list) {
+      if (move.kind == Move::Kind::rotate || move.kind == Move::Kind::matrix) break;
+      for (int k = 0; k < 3 && move.kind == Move::Kind::scale; ++k)
+        if (move.v[k] < 0) axes[static_cast<std::size_t>(k)] ^= true;
+    }
+    return axes;
+  }
+
   /// A box of triangles, whose faces lie side by side in an image as POV-Ray unfolds them: in four columns
   /// the sides of -x, +z, +x and -z, with +y above and -y below the second.
   Shapes unfolded_box(const Vec3d& lo, const Vec3d& hi) {
     MeshMaker maker;
+    const std::array<bool, 3> mirrored = mirrored_axes();
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const bool upper : {false, true}) {
         const std::size_t across = (axis + 1) % 3, along = (axis + 2) % 3;
         const auto corner = [&](bool right, bool above) {
-          std::array<double, 3> part{};
-          part[axis] = upper, part[across] = right, part[along] = above;
-          const Vec3d p{part[0], part[1], part[2]};
-          return MeshCorner{{p.x > 0 ? hi.x : lo.x, p.y > 0 ? hi.y : lo.y, p.z > 0 ? hi.z : lo.z},
+          std::array<bool, 3> end{};
+          end[axis] = upper, end[across] = right, end[along] = above;
+          const auto shown = [&](std::size_t k) { return end[k] != mirrored[k] ? 1.0 : 0.0; };
+          return MeshCorner{{end[0] ? hi.x : lo.x, end[1] ? hi.y : lo.y, end[2] ? hi.z : lo.z},
                             std::nullopt,
-                            unfolded(axis, upper, p)};
+                            unfolded(axis, shown(axis) > 0, {shown(0), shown(1), shown(2)})};
         };
         // Counterclockwise seen from outside.
         const MeshCorner a = corner(false, false), b = corner(upper, !upper), c = corner(true, true),
