@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/image/encode.h"
+#include "io/image/texture.h"
 #include "io/pov/translate/translate.h"
 #include "io/scene/pov_scene.h"
 #include "io/scene/scene_file.h"
@@ -360,6 +361,62 @@ TEST(PovModifiers, UnionsGrowInLoops) {
   EXPECT_EQ(spheres, 3001u);
   // One with a look of its own is more than its objects.
   EXPECT_THROW(scene_of(loop + "sphere { i, 1 } pigment { rgb x } } #end object { All }"), Error);
+}
+
+// Each layer has its own finish; light of those below is seen through those above.
+TEST(PovModifiers, LayersShineThroughEachOther) {
+  const std::string room =
+      "sphere { -20*z, 3 inverse hollow pigment { rgb 1 } finish { ambient .4 diffuse 0 } no_shadow } ";
+  const std::string lamp = "light_source { <0, 0, -9> rgb 1 } ";
+  const std::string coated =
+      "sphere { 0, 1 texture { pigment { rgb <1, 0, 0> } finish { ambient 0 diffuse .2 } } "
+      "texture { pigment { rgbt <0, 1, 0, .8> } finish { ambient 0 diffuse .2 phong .5 phong_size 3 ";
+  const std::string painted =
+      "sphere { 0, 1 texture { pigment { rgb <1, 0, 0> } finish { ambient 0 diffuse .2 specular .5 roughness "
+      ".1 } } "
+      "texture { pigment { rgbt <0, 1, 0, .8> } finish { ambient 0 diffuse .2 } } "
+      "texture { pigment { rgbf <.2, .5, 1, .5> } finish { ambient 0 diffuse .1 } } }";
+  expect_measured({
+      {(lamp + coated + "} } }").c_str(), {0.66f, 0.54f, 0.5f}},
+      {(lamp + room + coated + "reflection .25 } } }").c_str(), {0.76f, 0.64f, 0.6f}},
+      {(lamp + painted).c_str(), {0.0660f, 0.1350f, 0.25f}},
+  });
+}
+
+// Where an image that stands once ends, and where it lies on a ring.
+TEST(PovModifiers, ImagesLieWherePovRayLaysThem) {
+  const TempDir dir;
+  dir.write("ramp.ppm",
+            "P3 4 4 255 0 0 0 60 0 0 120 0 0 180 0 0 0 60 0 60 60 0 120 60 0 180 60 0 "
+            "0 120 0 60 120 0 120 120 0 180 120 0 0 180 0 60 180 0 120 180 0 180 180 0");
+  // Red and green, in steps of 60/255, at a place.
+  const auto texel = [&](const std::string& image, const std::string& place) {
+    Scene scene = load_scene(
+        dir.write("scene.pov", "#version 3.7; global_settings { assumed_gamma 1 } camera { location " +
+                                   place + " - 9*z look_at " + place + " angle 0.05 } sphere { " + place +
+                                   ", 0.02 pigment { image_map { ppm \"ramp.ppm\" " + image +
+                                   " } finish { ambient 1 diffuse 0 } }"));
+    scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
+    const ImageTextures textures(scene.textures, scene.texture_places);
+    RenderOptions options;
+    options.textures = &textures;
+    const Picture picture = render(scene, options).picture;
+    const auto steps = [&](const char* channel) {
+      return static_cast<int>(std::lround(double{picture.find(channel)->values[0]} * 255 / 60));
+    };
+    return std::pair(steps("R"), steps("G"));
+  };
+  using Texel = std::pair<int, int>;
+  const char* const flat = "once } rotate 90*x scale 2";
+  EXPECT_EQ(texel(flat, "<1.3, -1, .7>"), Texel(2, 2));
+  EXPECT_EQ(texel(flat, "<.3, -1, 1.8>"), Texel(0, 0));
+  EXPECT_EQ(texel(flat, "<2.1, -1, 1>"), Texel(0, 0));
+  const char* const around = "once map_type 2 } translate -y/2";
+  EXPECT_EQ(texel(around, "<-1, -.4, .5>"), Texel(1, 3));
+  EXPECT_EQ(texel(around, "<1, .6, .5>"), Texel(0, 0));
+  EXPECT_EQ(texel("map_type 5 }", "<1.4, .1, .1>"), Texel(0, 1));
+  EXPECT_EQ(texel("map_type 5 }", "<-.7, .2, -.1>"), Texel(2, 0));
+  EXPECT_EQ(texel("map_type 5 }", "<-.9, -.3, .1>"), Texel(1, 3));
 }
 
 }  // namespace

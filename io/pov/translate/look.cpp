@@ -52,11 +52,15 @@ class MaterialWriter {
     const Node map = tree_.map(where_);
     const bool transparent = is_transparent(look);
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
-    tree_.put(map, "color", color(look));
+    most_diffuse_ = 0;
+    for_each_plain(look, [&](const Look& l) { most_diffuse_ = std::max(most_diffuse_, l.finish.diffuse); });
+    tree_.put(map, "color", scattered(look));
     tree_.put(map, "ambient", weight(look, ambient_of));
     if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
-    tree_.put(map, "diffuse", weight(look, [](const Finish& f) { return f.diffuse; }));
+    tree_.put(map, "diffuse",
+              has_layers(look) ? tree_.number(where_, most_diffuse_)
+                               : weight(look, [](const Finish& f) { return f.diffuse; }));
     const auto back_of = [this](const Finish& f) { return lit_behind_ ? f.diffuse : f.diffuse_back; };
     if (any(look, [&](const Finish& f) { return back_of(f) > 0; }))
       tree_.put(map, "diffuse_back", weight(look, back_of));
@@ -126,6 +130,10 @@ class MaterialWriter {
     return is_seen;
   }
 
+  void put_unless_white(Node map, std::string_view key, Node color) {
+    if (flow_text(*color) != "[1, 1, 1]") tree_.put(map, key, color);
+  }
+
   // ---- Values of a look that may be in a pattern.
 
   /// `of` for a plain look; a texture of these in the pattern of a look if they differ.
@@ -175,21 +183,67 @@ class MaterialWriter {
     return *shown;
   }
 
+  /// Which plain looks have what is asked for.
+  using Asked = std::function<bool(const Finish&)>;
+
+  /// Of layers the uppermost that has what is asked for; else the one that is seen most.
+  static std::size_t asked_layer(const Look& look, const Asked& asked) {
+    for (std::size_t i = look.layers.size(); i-- > 0;)
+      if (any(look.layers[i], asked)) return i;
+    return static_cast<std::size_t>(&shown_layer(look) - look.layers.data());
+  }
+
+  /// A value of the layers that have what is asked for.
+  Node of_asked_layer(const Look& look, const PlainNode& plain, const Asked& asked) {
+    PlainNode layers;
+    layers = [&](const Look& l) { return in_pattern(l.layers[asked_layer(l, asked)], plain, layers); };
+    return in_pattern(look, plain, layers);
+  }
+  Node number(const Look& look, const std::function<double(const Look&)>& of, const Asked& asked) {
+    return of_asked_layer(
+        look, [&](const Look& l) { return tree_.number(where_, of(l)); }, asked);
+  }
+  /// The colour of what such layers send, as the layers above let it pass.
+  Node sent_color(const Look& look, const std::function<Vec3d(const Finish&, const Vec3d&)>& of,
+                  const Asked& asked) {
+    const PlainNode plain = [&](const Look& l) {
+      return pigment_node(context_, where_, l.pigment,
+                          {[&](const PovColor& c) { return of(l.finish, c.rgb); }});
+    };
+    PlainNode layers;
+    layers = [&](const Look& l) {
+      const std::size_t from = asked_layer(l, asked);
+      Node color = in_pattern(l.layers[from], plain, layers);
+      for (std::size_t i = from + 1; i < l.layers.size(); ++i)
+        color = over_node(tree_, where_, color_node(tree_, where_, {0, 0, 0}),
+                          colors(l.layers[i], {through_of}, false), color);
+      return color;
+    };
+    return in_pattern(look, plain, layers);
+  }
+
   Node number(const Look& look, const std::function<double(const Look&)>& of) {
     return of_shown_layer(look, [&](const Look& l) { return tree_.number(where_, of(l)); });
   }
 
   /// Colours of layers above each other: each is seen through what those above it let pass.
   Node colors(const Look& look, const ColorPart& part, bool is_sum) {
-    const PlainNode plain = [&](const Look& l) { return pigment_node(context_, where_, l.pigment, part); };
+    return colors_by_finish(
+        look, [&](const Finish&) { return part; }, is_sum);
+  }
+  Node colors_by_finish(const Look& look, const std::function<ColorPart(const Finish&)>& part, bool is_sum) {
+    const PlainNode plain = [&](const Look& l) {
+      return pigment_node(context_, where_, l.pigment, part(l.finish));
+    };
     const PlainNode layers = [&](const Look& l) -> Node {
-      Node below = colors(l.layers.front(), part, is_sum);
+      Node below = colors_by_finish(l.layers.front(), part, is_sum);
       for (std::size_t i = 1; i < l.layers.size(); ++i) {
         if (!is_transparent(l.layers[i])) {
-          below = colors(l.layers[i], part, is_sum);
+          below = colors_by_finish(l.layers[i], part, is_sum);
           continue;
         }
-        const Node color = is_sum ? colors(l.layers[i], part, true) : color_node(tree_, where_, {0, 0, 0});
+        const Node color =
+            is_sum ? colors_by_finish(l.layers[i], part, true) : color_node(tree_, where_, {0, 0, 0});
         const Node filter = colors(l.layers[i], {through_of}, false);
         below = over_node(tree_, where_, color, filter, below);
       }
@@ -198,10 +252,26 @@ class MaterialWriter {
     return in_pattern(look, plain, layers);
   }
 
+  /// What a layer scatters of the light of lamps, of the most that one does.
+  double diffuse_share(const Finish& f) const { return most_diffuse_ > 0 ? f.diffuse / most_diffuse_ : 1; }
+
+  /// The colours of a look that scatters light; of layers less what passes through, and by their share.
+  Node scattered(const Look& look) {
+    if (!has_layers(look)) return color(look);
+    const auto part = [this](const Finish& f) -> ColorPart {
+      return {[share = diffuse_share(f)](const PovColor& c) { return c.rgb * (left_of(c) * share); }};
+    };
+    return colors_by_finish(look, part, true);
+  }
+
   /// A weight of the light that a surface scatters: of its colour, as far as no light passes. Colours of
-  /// layers are less that part already.
+  /// layers are less that part already, and have their share.
   Node weight(const Look& look, const std::function<double(const Finish&)>& of) {
-    if (has_layers(look)) return number(look, [&](const Look& l) { return of(l.finish); });
+    if (has_layers(look))
+      return number(look, [&](const Look& l) {
+        const double share = diffuse_share(l.finish);
+        return share > 0 ? of(l.finish) / share : of(l.finish);
+      });
     return of_shown_layer(look, [&](const Look& l) {
       const double all = of(l.finish);
       if (!is_transparent(l.pigment)) return tree_.number(where_, all);
@@ -246,37 +316,46 @@ class MaterialWriter {
   }
 
   void put_highlight(Node map, const Look& look) {
-    if (any(look, [](const Finish& f) { return f.phong > 0; })) {
+    const auto has_phong = [](const Finish& f) { return f.phong > 0; };
+    if (any(look, has_phong)) {
       put_unless_zero(map, "specular",
-                      number(look, [](const Look& l) { return std::max(0.0, l.finish.phong); }));
-      tree_.put(map, "phong", number(look, [](const Look& l) { return std::max(0.0, l.finish.phong_size); }));
+                      number(
+                          look, [](const Look& l) { return std::max(0.0, l.finish.phong); }, has_phong));
+      tree_.put(map, "phong",
+                number(
+                    look, [](const Look& l) { return std::max(0.0, l.finish.phong_size); }, has_phong));
     }
-    if (any(look, [](const Finish& f) { return f.specular > 0; })) {
-      const bool is_seen =
-          put_unless_zero(map, "specular_blinn",
-                          number(look, [](const Look& l) { return std::max(0.0, l.finish.specular); }));
+    const auto has_specular = [](const Finish& f) { return f.specular > 0; };
+    if (any(look, has_specular)) {
+      const bool is_seen = put_unless_zero(
+          map, "specular_blinn",
+          number(
+              look, [](const Look& l) { return std::max(0.0, l.finish.specular); }, has_specular));
       if (is_seen)
-        tree_.put(map, "blinn",
-                  number(look, [](const Look& l) { return 1 / std::max(l.finish.roughness, 1e-6); }));
+        tree_.put(
+            map, "blinn",
+            number(
+                look, [](const Look& l) { return 1 / std::max(l.finish.roughness, 1e-6); }, has_specular));
     }
-    const auto tinted = [](const Finish& f) { return f.metallic > 0 && (f.phong > 0 || f.specular > 0); };
-    if (any(look, tinted))
-      tree_.put(map, "specular_color",
-                of_shown_layer(look,
-                               [&](const Look& l) {
-                                 return pigment_node(context_, where_, l.pigment, {[&](const PovColor& c) {
-                                                       return tint(l.finish.metallic, c.rgb);
-                                                     }});
-                               })),
-          tree_.put(map, "specular_fades", tree_.flag(where_, true));
+    const auto shines = [](const Finish& f) { return f.phong > 0 || f.specular > 0; };
+    if (!any(look, shines)) return;
+    const auto color = [](const Finish& f, const Vec3d& rgb) { return tint(f.metallic, rgb); };
+    put_unless_white(map, "specular_color", sent_color(look, color, shines));
+    if (any(look, [&](const Finish& f) { return f.metallic > 0 && shines(f); }))
+      tree_.put(map, "specular_fades", tree_.flag(where_, true));
   }
 
   /// The colours of a thin film.
   void put_film(Node map, const Look& look) {
-    if (!any(look, [](const Finish& f) { return f.irid > 0; })) return;
-    if (!put_unless_zero(map, "film", number(look, [](const Look& l) { return l.finish.irid; }))) return;
+    const auto has_film = [](const Finish& f) { return f.irid > 0; };
+    if (!any(look, has_film)) return;
+    if (!put_unless_zero(map, "film",
+                         number(
+                             look, [](const Look& l) { return l.finish.irid; }, has_film)))
+      return;
     tree_.put(map, "film_thickness",
-              of_shown_layer(look, [&](const Look& l) { return thickness(l.finish); }));
+              of_asked_layer(
+                  look, [&](const Look& l) { return thickness(l.finish); }, has_film));
   }
 
   /// That of a film in nanometres, which turbulence changes from place to place.
@@ -320,8 +399,10 @@ class MaterialWriter {
 
   void put_reflection(Node map, const Look& look) {
     if (!any(look, mirrors)) return;
-    const bool is_seen = put_unless_zero(
-        map, "reflection", number(look, [](const Look& l) { return weight_of(l.finish.reflection); }));
+    const bool is_seen =
+        put_unless_zero(map, "reflection",
+                        number(
+                            look, [](const Look& l) { return weight_of(l.finish.reflection); }, mirrors));
     const bool grows = any(look, [](const Finish& f) { return f.varies; });
     if (!is_seen && !grows) return;
     put_growth(map, look);
@@ -329,20 +410,20 @@ class MaterialWriter {
       tree_.put(map, "conserve_energy", tree_.flag(where_, true));
     if (any(look, [](const Finish& f) { return f.reflection_metallic > 0; }))
       tree_.put(map, "reflection_fades", tree_.flag(where_, true));
-    const auto is_colored = [](const Finish& f) { return !(hue_of(f, {0, 0.5, 1}) == Vec3d{1, 1, 1}); };
-    const bool tints_highlights = has_key(*map, "specular_color");
-    if (!any(look, is_colored) && !tints_highlights) return;
-    tree_.put(map, "reflection_color", of_shown_layer(look, [&](const Look& l) {
-                return pigment_node(context_, where_, l.pigment,
-                                    {[&](const PovColor& c) { return hue_of(l.finish, c.rgb); }});
-              }));
+    const Node color = sent_color(look, hue_of, mirrors);
+    // Without a colour of its own, mirrored light has that of highlights.
+    if (has_key(*map, "specular_color"))
+      tree_.put(map, "reflection_color", color);
+    else
+      put_unless_white(map, "reflection_color", color);
   }
 
   /// How reflection grows with the angle.
   void put_growth(Node map, const Look& look) {
     if (!any(look, [](const Finish& f) { return f.varies; })) return;
     tree_.put(map, "reflection_grazing",
-              number(look, [](const Look& l) { return weight_of(l.finish.reflection_max); }));
+              number(
+                  look, [](const Look& l) { return weight_of(l.finish.reflection_max); }, mirrors));
     Finish first;
     bool found = false;
     for_each_plain(look, [&](const Look& l) {
@@ -358,6 +439,7 @@ class MaterialWriter {
   Tree& tree_;
   Place where_;
   bool lit_behind_;
+  double most_diffuse_ = 0;  ///< of the look that is written
 };
 
 }  // namespace

@@ -513,7 +513,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   Tree& tree = context_.tree;
   p.word = "image_map", p.where = block.where, p.key = "", p.own = tree.map(block.where), p.is_list = false;
   std::string_view onto = "planar";
-  std::optional<Place> once;
+  bool once = false;
   // Numbers of some kinds of files are taken as they are, and so are all in scenes of before 3.7.
   bool decoded = context_.document.version >= 3.7;
   // Heights are blended always, as what is between them tilts the surface.
@@ -533,7 +533,7 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       const double type = a.number("a kind");
       onto = type == 1 ? "spherical" : type == 2 ? "cylindrical" : type == 5 ? "toroidal" : "planar";
     } else if (word->text == "once") {
-      once = where;
+      once = true;
     } else if (word->text == "interpolate") {
       blended = true;
     } else if (word->text == "ppm" || word->text == "pgm" || word->text == "tiff") {
@@ -546,9 +546,9 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
   if (p.image != nullptr && (!decoded || context_.gamma.is_encoded()))
     tree.put(p.image, "color_space", tree.word(p.where, "linear"));
   if (p.image != nullptr && !blended) tree.put(p.image, "filter", tree.word(p.where, "nearest"));
-  p.once = once && onto == "planar";
-  if (once && !p.once)
-    context_.tell("once", *once, "'once' of an image that is not planar has no meaning here: it repeats");
+  // Around the axis an image has no end.
+  p.once = once && (onto == "planar" || onto == "cylindrical");
+  p.is_around = onto != "planar", p.is_ring = onto == "toroidal";
   if (onto != "planar") set(p.own, "onto", tree.word(block.where, onto));
 }
 
@@ -589,6 +589,20 @@ static Node laid_image(Tree& tree, const PovPattern& p) {
   return image;
 }
 
+/// Lays an image around a ring from its inside on, as in POV-Ray; here it is from the outside.
+static void from_inside(Tree& tree, Node keys) {
+  for (std::size_t i = 0; i + 1 < keys->items.size(); i += 2) {
+    const YamlNode& shown = *keys->items[i + 1];
+    if (keys->items[i]->text != "of" || shown.kind != YamlKind::map) continue;
+    const Place top;
+    const Node image = tree.map(top), offset = tree.list(top);
+    image->items = shown.items;
+    for (const double number : {0.0, 0.5}) Tree::push(offset, tree.number(top, number));
+    tree.put(image, "offset", offset);
+    keys->items[i + 1] = image;
+  }
+}
+
 /// The same pattern by Oktett's u and v.
 static PovPattern laid_pattern(Tree& tree, const PovPattern& p) {
   PovPattern laid = p;
@@ -604,12 +618,25 @@ static PovPattern laid_pattern(Tree& tree, const PovPattern& p) {
   return laid;
 }
 
+PovPattern repeated_image(const PovPattern& p) {
+  PovPattern repeated = p;
+  repeated.once = false;
+  // A texture that lies by u and v itself needs no place.
+  if (p.uses_uv && !p.is_moved()) return repeated;
+  repeated.is_ring &= !p.uses_uv;
+  repeated.modifiers.clear(), repeated.turbulence = {0, 0, 0}, repeated.uses_uv = false, repeated.uv = {};
+  return repeated;
+}
+
 Node once_node(Context& context, const PovPattern& p, Node inside, Node outside) {
   Tree& tree = context.tree;
   PovPattern mask = p;
   mask.key = "function", mask.own = tree.map(p.where), mask.image = nullptr, mask.once = false;
-  tree.put(mask.own, "f",
-           tree.text(p.where, "max(max(0, sign(abs(x - 0.5) - 0.5)), max(0, sign(abs(y - 0.5) - 0.5)))"));
+  const std::string above = "max(0, sign(abs(y - 0.5) - 0.5))";
+  tree.put(
+      mask.own, "f",
+      tree.text(p.where,
+                p.is_around && !p.uses_uv ? above : "max(max(0, sign(abs(x - 0.5) - 0.5)), " + above + ")"));
   const Node values = tree.list(p.where);
   push_entry(tree, p.where, values, 0, inside), push_entry(tree, p.where, values, 1, outside);
   return pattern_node(context, mask, values);
@@ -618,15 +645,13 @@ Node once_node(Context& context, const PovPattern& p, Node inside, Node outside)
 Node pattern_node(Context& context, const PovPattern& p, Node values) {
   Tree& tree = context.tree;
   const Place& where = p.where;
-  if (p.once) {
-    PovPattern repeated = p;
-    repeated.once = false;
-    return once_node(context, p, pattern_node(context, repeated, values), tree.number(where, 0));
-  }
+  if (p.once)
+    return once_node(context, p, pattern_node(context, repeated_image(p), values), tree.number(where, 0));
   if (p.image != nullptr && p.uses_uv && !p.is_moved()) return laid_image(tree, p);
   if (p.uses_uv && !(p.uv == UvLayout{})) return pattern_node(context, laid_pattern(tree, p), values);
   const Node keys = tree.map(where);
   if (p.own != nullptr) keys->items = p.own->items;
+  if (p.is_ring && !p.uses_uv) from_inside(tree, keys);
   if (values != nullptr) tree.put(keys, p.is_list ? "colors" : "map", values);
   const bool has_values = p.key != "projected" && p.key != "over";
   if (has_values) {

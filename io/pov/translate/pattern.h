@@ -28,7 +28,9 @@ struct PovPattern {
   bool is_list = false;  ///< it has a list of colours in place of a map
   bool uses_uv = false;
   UvLayout uv;
-  bool once = false;         ///< of an image in the unit square of x and y: it is not repeated
+  bool once = false;         ///< of an image: it is not repeated
+  bool is_around = false;    ///< of an image: it lies around the y axis
+  bool is_ring = false;      ///< and around a ring
   Vec3d direction{0, 1, 0};  ///< of a gradient
 
   /// Transforms, and warps as items of scene files, in the order in which they are applied to the pattern.
@@ -96,7 +98,9 @@ Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node und
 /// its values are numbers.
 Node pattern_node(Context& context, const PovPattern& pattern, Node values);
 
-/// What an image that is not repeated shows: `inside` on its unit square, `outside` beyond.
+/// An image that is not repeated, as it repeats at places on the image.
+PovPattern repeated_image(const PovPattern& once);
+/// What it shows: `inside` on its unit square, `outside` beyond.
 Node once_node(Context& context, const PovPattern& pattern, Node inside, Node outside);
 
 /// How many times longer a length is in space than in the pattern, in the mean over all directions.

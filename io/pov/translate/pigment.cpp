@@ -344,7 +344,7 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   Tree& tree = context.tree;
   if (p.pattern.once) {
     Pigment repeated = p;
-    repeated.pattern.once = false;
+    repeated.pattern = repeated_image(p.pattern);
     // Beyond its edges light passes as if nothing were there.
     return once_node(context, p.pattern, image_node(context, repeated, part),
                      part_node(tree, p.pattern.where, part, part({{0, 0, 0}, 0, 1})));
