@@ -93,11 +93,27 @@ void add_above(MeshMaker& mesh, const std::array<MeshCorner, 3>& triangle, doubl
   for (std::size_t i = 2; i < left.size(); ++i) mesh.add({left[0], left[i - 1], left[i]});
 }
 
+/// All triangles, two to a cell.
+std::shared_ptr<const TriangleMesh> whole_field(const Heights& h, bool smooth) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (std::uint32_t row = 0; row < h.rows; ++row)
+    for (std::uint32_t column = 0; column < h.columns; ++column) {
+      mesh->positions.push_back(Vec3f(h.place(column, row)));
+      if (smooth) mesh->normals.push_back(Vec3f(h.normal(column, row)));
+      if (column + 1 == h.columns || row + 1 == h.rows) continue;
+      const std::uint32_t a = row * h.columns + column, b = a + 1, d = a + h.columns, c = d + 1;
+      for (const std::uint32_t corner : {a, d, b, b, d, c}) mesh->indices.push_back(corner);
+    }
+  if (smooth) mesh->normal_indices = mesh->indices;
+  return mesh;
+}
+
 }  // namespace
 
-std::optional<MeshMaker> height_mesh(Context& context, const Function& function, const HeightForm& form) {
+std::shared_ptr<const TriangleMesh> height_mesh(Context& context, const Function& function,
+                                                const HeightForm& form) {
   const auto [columns, rows, smooth, solid, water] = form;
-  if (context.queries == nullptr || function.nodes.empty()) return std::nullopt;
+  if (context.queries == nullptr || function.nodes.empty()) return nullptr;
   Heights h{columns, rows, {}};
   h.y.reserve(std::size_t{columns} * rows);
   // A function that takes more in all is none here.
@@ -109,12 +125,13 @@ std::optional<MeshMaker> height_mesh(Context& context, const Function& function,
         // The upper edge of the picture, where y is 0, lies at z = 1.
         const auto y =
             height_at(context, function, column / (columns - 1.0), 1 - row / (rows - 1.0), most_steps);
-        if (!y) return std::nullopt;
+        if (!y) return nullptr;
         h.y.push_back(*y);
       }
   } catch (const Error&) {
-    return std::nullopt;
+    return nullptr;
   }
+  if (!solid && !(water > 0)) return whole_field(h, smooth);
   const auto corner = [&, normals = smooth](std::uint32_t column, std::uint32_t row) {
     MeshCorner c{h.place(column, row)};
     if (normals) c.normal = h.normal(column, row);
@@ -133,7 +150,7 @@ std::optional<MeshMaker> height_mesh(Context& context, const Function& function,
       }
     }
   if (solid) close(mesh, h);
-  return mesh;
+  return mesh.finish();
 }
 
 }  // namespace oktett::pov

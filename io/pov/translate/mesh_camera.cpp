@@ -114,7 +114,8 @@ class MeshCamera {
     if (names_.contains(&block)) return true;
     const std::optional<MadeMesh> made = make_mesh(context_, a, MeshUse::camera);
     if (!made || made->parts.empty() || made->parts[0].mesh.empty()) return false;
-    names_[&block] = add_mesh(context_, made->parts[0].mesh, block.name.empty() ? "camera" : block.name);
+    names_[&block] =
+        add_mesh(context_, made->parts[0].mesh.finish(), block.name.empty() ? "camera" : block.name);
     return true;
   }
 

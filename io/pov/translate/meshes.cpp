@@ -3,18 +3,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <map>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 #include "core/far_mesh.h"
+#include "core/random.h"
 #include "io/pov/translate/extent.h"
 #include "io/pov/translate/plane_loops.h"
 
 namespace oktett::pov {
+
+namespace {
+
+/// Position, normal and uv of a corner.
+using CornerNumbers = std::array<double, 8>;
+struct HashOfCorner {
+  std::size_t operator()(const CornerNumbers& corner) const {
+    std::uint64_t key = 0;
+    for (const double number : corner)
+      key = mix_bits(key + std::bit_cast<std::uint64_t>(number) + kGoldenBits);
+    return key;
+  }
+};
+
+/// Of a triangle; up, if it has no area.
+Vec3d flat_normal(const std::array<MeshCorner, 3>& triangle) {
+  const Vec3d face =
+      cross(triangle[1].position - triangle[0].position, triangle[2].position - triangle[0].position);
+  const double size = length(face);
+  return size > 0 ? face / size : Vec3d{0, 1, 0};
+}
+
+}  // namespace
 
 void MeshMaker::add(std::array<MeshCorner, 3> corners) {
   const Vec3d face =
@@ -31,18 +56,16 @@ std::shared_ptr<const TriangleMesh> MeshMaker::finish() const {
   for (const auto& triangle : triangles_)
     for (const MeshCorner& c : triangle) normals |= c.normal.has_value(), uvs |= c.uv.has_value();
   std::vector<Vec3d> places;
-  std::map<std::array<double, 8>, std::uint32_t> known;
+  std::unordered_map<CornerNumbers, std::uint32_t, HashOfCorner> known;
   for (const auto& triangle : triangles_) {
-    const Vec3d face =
-        cross(triangle[1].position - triangle[0].position, triangle[2].position - triangle[0].position);
-    const double size = length(face);
-    const Vec3d flat = size > 0 ? face / size : Vec3d{0, 1, 0};
+    const Vec3d flat = normals ? flat_normal(triangle) : Vec3d{0, 1, 0};
     for (const MeshCorner& c : triangle) {
       const Vec3d n = c.normal.value_or(flat);
       const auto uv = c.uv.value_or(std::array<double, 2>{0, 0});
-      std::array<double, 8> key{c.position.x, c.position.y, c.position.z};
+      CornerNumbers key{c.position.x, c.position.y, c.position.z};
       if (normals) key[3] = n.x, key[4] = n.y, key[5] = n.z;
       if (uvs) key[6] = uv[0], key[7] = uv[1];
+      for (double& number : key) number += 0.0;  // 0 for -0, which has other bits
       const auto [entry, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(places.size()));
       if (is_new) {
         places.push_back(c.position);
@@ -63,11 +86,11 @@ std::shared_ptr<const TriangleMesh> MeshMaker::finish() const {
   return mesh;
 }
 
-std::string add_mesh(Context& context, const MeshMaker& mesh, const std::string& wanted) {
+std::string add_mesh(Context& context, std::shared_ptr<const TriangleMesh> mesh, const std::string& wanted) {
   std::string name;
   for (int i = 1; name.empty() || context.meshes.contains(name); ++i)
     name = fmt::format("{}{}{}.ply", context.mesh_prefix, wanted, i == 1 ? "" : fmt::format("-{}", i));
-  context.meshes.emplace(name, mesh.finish());
+  context.meshes.emplace(name, std::move(mesh));
   return name;
 }
 

@@ -60,6 +60,6 @@ struct MadeMesh {
 std::optional<MadeMesh> make_mesh(Context& context, Arguments& arguments, MeshUse use = MeshUse::shown);
 
 /// Adds a mesh to those of the scene. Returns the name by which the tree refers to it.
-std::string add_mesh(Context& context, const MeshMaker& mesh, const std::string& wanted);
+std::string add_mesh(Context& context, std::shared_ptr<const TriangleMesh> mesh, const std::string& wanted);
 
 }  // namespace oktett::pov

@@ -601,11 +601,13 @@ class ShapeMaker {
       else
         break;
     }
-    std::optional<MeshMaker> maker =
+    std::shared_ptr<const TriangleMesh> heights =
         height_mesh(context_, *function, {columns, rows, smooth, operand_, std::min(water, 1.0)});
-    if (!maker)
+    if (heights == nullptr)
       return left_out("the function of a height field has no value somewhere, or takes too many steps");
-    Shapes shapes = mesh({{{std::move(*maker), nullptr}}, operand_});
+    Shapes shapes;
+    shapes.parts.push_back(mesh_shape(std::move(heights), nullptr));
+    shapes.solid = operand_;
     if (operand_) add_water(shapes, water);
     return shapes;
   }
@@ -617,6 +619,13 @@ class ShapeMaker {
     tree_.put(above, "normal", vector({0, -1, 0})), tree_.put(above, "offset", number(-water));
     shapes.parts.push_back({"plane", above, nullptr, {}});
     shapes.meet = true;
+  }
+
+  Shape mesh_shape(std::shared_ptr<const TriangleMesh> made, const std::shared_ptr<const Block>& texture) {
+    const Block& block = a_.block();
+    const std::string file =
+        add_mesh(context_, std::move(made), block.name.empty() ? std::string(block.keyword) : block.name);
+    return {"mesh", tree_.map(where_, "file", tree_.text(where_, file)), texture, {}};
   }
 
   Shapes mesh(MadeMesh made) {
@@ -635,12 +644,9 @@ class ShapeMaker {
     }
     for (const MeshPart& part : made.parts) {
       if (part.mesh.empty()) continue;
-      const std::string& name = a_.block().name;
-      const std::string file =
-          add_mesh(context_, part.mesh, name.empty() ? std::string(a_.block().keyword) : name);
-      const Node keys = tree_.map(where_, "file", tree_.text(where_, file));
-      if (inside_vectors > 0 && operand_) tree_.put(keys, "solid", tree_.word(where_, "winding"));
-      shapes.parts.push_back({"mesh", keys, part.texture, {}});
+      Shape shape = mesh_shape(part.mesh.finish(), part.texture);
+      if (inside_vectors > 0 && operand_) tree_.put(shape.value, "solid", tree_.word(where_, "winding"));
+      shapes.parts.push_back(std::move(shape));
     }
     shapes.solid = solid;
     return shapes;
