@@ -47,6 +47,15 @@ TEST(Exact, AgreesWithItsOracle) {
   }
 }
 
+/// Where a pole lies within the bound of a position, the values around it are infinite.
+TEST(Exact, PolesWithinTheBoundAreCreases) {
+  const std::vector<std::string> names = exact_oracle_names();
+  const auto form = static_cast<std::size_t>(std::ranges::find(names, "ratiohyperboloid") - names.begin());
+  const ExactTally t = verify_exact(form, kRaysPerShape, available_isas(), 8617734704473994922u);
+  EXPECT_EQ(t.wrong(), 0u) << t.failure;
+  EXPECT_GT(t.creased, 0u);
+}
+
 /// Geometric normals are those of the oracle's function.
 TEST(Exact, NormalsAreGradientsOfTheOracle) {
   const std::vector<std::string> names = exact_oracle_names();
