@@ -363,6 +363,68 @@ TEST(PovModifiers, UnionsGrowInLoops) {
   EXPECT_THROW(scene_of(loop + "sphere { i, 1 } pigment { rgb x } } #end object { All }"), Error);
 }
 
+// A pigment that names none changes the one that is there; of layers the uppermost is changed.
+TEST(PovModifiers, PigmentsAreChanged) {
+  const std::string shown = " finish { ambient 1 diffuse 0 } ";
+  const std::string ramp =
+      "#declare M = texture { pigment { gradient z color_map { [0 rgb x] [1 rgb z] } }" + shown + "} ";
+  const std::string layers =
+      "#declare T = texture { pigment { rgb x } finish { ambient .1 diffuse 0 } } "
+      "texture { pigment { rgbt <0, 1, 0, .5> } finish { ambient .1 diffuse 0 } } ";
+  expect_measured({
+      {(ramp + "#declare S = sphere { 0, 1 texture { M } } object { S pigment { scale .3 } }").c_str(),
+       {0.3333028f, 0, 0.6666972f}},
+      {(ramp + "sphere { 0, 1.1 texture { M pigment { color_map { [0 rgb y] [1 rgb 1] } } } }").c_str(),
+       {0.9000076f, 1, 0.9000076f}},
+      {(ramp + "sphere { 0, 1.1 texture { M } pigment { scale 3 } translate -.2*z }").c_str(),
+       {0.3666743f, 0, 0.6333410f}},
+      {(layers + "sphere { 0, 1 texture { T finish { ambient .9 } } }").c_str(), {0.0500038f, 0.4500038f, 0}},
+      {("background { rgb .5 } #declare P = pigment { rgb x }; sphere { 0, 1 pigment { P transmit .6 }" +
+        shown + "}")
+           .c_str(),
+       {0.1799954f, 0.1799954f, 0.1799954f}},
+  });
+}
+
+// From the place of the last entry on a map shows that; below it the first place that is not below the value.
+TEST(PovModifiers, PlacesOfMapsMayDescend) {
+  const std::string shown = " finish { ambient 1 diffuse 0 } ";
+  expect_measured({
+      {("plane { -z, 0 pigment { gradient x color_map { [.5 rgb x] [.3 rgb y] } } translate -.4*x" + shown +
+        "}")
+           .c_str(),
+       {0, 1, 0}},
+      {("plane { -z, 0 pigment { gradient x color_map { [.2 rgb 0] [.5 rgb x] [.3 rgb y] } translate -.25*x "
+        "}" +
+        shown + "}")
+           .c_str(),
+       {0.1666590f, 0, 0}},
+      {("plane { -z, 0 texture { gradient x texture_map { [.7 pigment { rgb x }" + shown +
+        "] [.3 pigment { rgb y }" + shown + "] } translate -.5*x } }")
+           .c_str(),
+       {0, 1, 0}},
+  });
+}
+
+TEST(PovModifiers, BlocksMoveWhatStandsInThem) {
+  const std::string shown = " finish { ambient 1 diffuse 0 } ";
+  EXPECT_EQ(middle("#declare C = cylinder { -9*z, 9*z, 1 } plane { -z, 0 pigment { rgb y } "
+                   "clipped_by { C scale 2 } translate 1.5*x" +
+                   shown + "}"),
+            (Vec3f{0, 1, 0}));
+  expect_measured({
+      {"#declare L = union { light_source { <-20, 10, -30> rgb .5 } light_source { <0, 30, -1> rgb x } } "
+       "light_source { L } plane { -z, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }",
+       {0.4342107f, 0.4008850f, 0.4008850f}},
+  });
+}
+
+// As high as it is far from <0, 0, 1>, to where it looks.
+TEST(PovModifiers, AnOrthographicViewIsAsHighAsItIsFar) {
+  EXPECT_EQ(scene_of("camera { orthographic location -8*z } sphere { 0, 1 }"),
+            scene_of("camera { orthographic location -8*z right 11.97*x up 9*y } sphere { 0, 1 }"));
+}
+
 // Each layer has its own finish; light of those below is seen through those above.
 TEST(PovModifiers, LayersShineThroughEachOther) {
   const std::string room =

@@ -54,9 +54,10 @@ class MaterialWriter {
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
     most_diffuse_ = 0;
     for_each_plain(look, [&](const Look& l) { most_diffuse_ = std::max(most_diffuse_, l.finish.diffuse); });
+    ambient_glows_ = has_layers(look) && !has_even_ambient(look);
     tree_.put(map, "color", scattered(look));
-    tree_.put(map, "ambient", weight(look, ambient_of));
-    if (any(look, [](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
+    tree_.put(map, "ambient", weight(look, [this](const Finish& f) { return ambient_of(f); }));
+    if (any(look, [this](const Finish& f) { return !(glow_of(f) == Vec3d{0, 0, 0}); }))
       tree_.put(map, "emission", glow(look));
     tree_.put(map, "diffuse",
               has_layers(look) ? tree_.number(where_, most_diffuse_)
@@ -107,8 +108,24 @@ class MaterialWriter {
 
   using PlainNode = std::function<Node(const Look&)>;
 
-  static double ambient_of(const Finish& f) { return is_grey(f.ambient) ? std::max(0.0, f.ambient.x) : 0; }
-  static Vec3d glow_of(const Finish& f) { return is_grey(f.ambient) ? f.emission : f.emission + f.ambient; }
+  double ambient_of(const Finish& f) const {
+    return is_grey(f.ambient) && !ambient_glows_ ? std::max(0.0, f.ambient.x) : 0;
+  }
+  /// What a surface shows without lamps, where that is not its ambient light.
+  Vec3d glow_of(const Finish& f) const {
+    return is_grey(f.ambient) && !ambient_glows_ ? f.emission : f.emission + f.ambient;
+  }
+  /// Whether all layers have as much ambient light as the share of diffuse light that they have.
+  bool has_even_ambient(const Look& look) const {
+    std::optional<double> ambient;
+    bool even = true;
+    for_each_plain(look, [&](const Look& l) {
+      const double share = diffuse_share(l.finish);
+      const double own = share > 0 ? l.finish.ambient.x / share : -1;
+      even = even && (!ambient || std::abs(own - *ambient) < 1e-9), ambient = own;
+    });
+    return even;
+  }
 
   static bool has_layers(const Look& look) {
     return !look.layers.empty() || std::ranges::any_of(look.entries, [](const TextureEntry& entry) {
@@ -283,12 +300,10 @@ class MaterialWriter {
   Node filter(const Look& look) { return colors(look, {through_of}, false); }
 
   Node glow(const Look& look) {
-    const PlainNode plain = [&](const Look& l) {
-      const Vec3d factor = glow_of(l.finish);
-      return pigment_node(context_, where_, l.pigment,
-                          {[&](const PovColor& c) { return factor * c.rgb * left_of(c); }});
+    const auto part = [this](const Finish& f) -> ColorPart {
+      return {[glow = glow_of(f)](const PovColor& c) { return glow * c.rgb * left_of(c); }};
     };
-    return of_shown_layer(look, plain);
+    return colors_by_finish(look, part, true);
   }
 
   Node of_shown_layer(const Look& look, const PlainNode& plain) {
@@ -439,7 +454,8 @@ class MaterialWriter {
   Tree& tree_;
   Place where_;
   bool lit_behind_;
-  double most_diffuse_ = 0;  ///< of the look that is written
+  double most_diffuse_ = 0;     ///< of the look that is written
+  bool ambient_glows_ = false;  ///< its ambient light is that of each layer, as emission
 };
 
 }  // namespace

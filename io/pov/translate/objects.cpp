@@ -251,6 +251,15 @@ static std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) 
   return objects;
 }
 
+/// The transforms that stand in a block `clipped_by` or `bounded_by` itself.
+static Moves moves_in(Context& context, const Block& block) {
+  Moves moves;
+  Arguments a(context, block);
+  while (!a.at_end())
+    if (!take_moves(context, a, moves)) a.take();
+  return moves;
+}
+
 /// Whether all that bounds an object is a shape that scene files can look through.
 static bool is_bounded_by_windows(const Block& block) {
   constexpr std::array<std::string_view, 6> kWindows{"sphere", "box", "cylinder", "cone", "plane", "torus"};
@@ -421,7 +430,7 @@ ObjectWriter::Built ObjectWriter::seen_through_bounds(const Block& block, const 
   std::vector<Node> windows;
   const bool was_asked = std::exchange(asked_, true);
   for (const Modifiers::Clip& bound : m.bounds) {
-    Moves moves;
+    Moves moves = moves_in(context_, *bound.block);
     for (std::size_t k = bound.moves_before; k < m.moves.list.size(); ++k) moves.add(m.moves.list[k]);
     for (const Built& part : build_all(objects_in(*bound.block), inside)) {
       if (!part.node || part.negative) continue;
@@ -560,6 +569,7 @@ ObjectWriter::Built ObjectWriter::finish(const Block& block, const Modifiers& m,
     std::erase_if(parts, [](const Built& b) { return !b.node; });
     if (parts.empty()) continue;
     Built cutter = parts.size() == 1 ? parts[0] : combine(clip.block->where, "intersection", parts);
+    add_moves(cutter.node, moves_in(context_, *clip.block), clip.block->where);
     built = combine(where, "intersection", {built, cutter});
   }
   if (!moved) move(moves_until(m.moves.list.size()));

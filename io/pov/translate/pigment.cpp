@@ -36,24 +36,12 @@ PovColor color_at(const std::vector<PigmentEntry>& map, double at) {
   return color_of(map.back());
 }
 
-/// A map whose places ascend and that shows the same. POV-Ray looks for the first place that is not below the
-/// value, and blends from the entry before it, wherever that is; so an entry below others shows nothing
-/// itself.
-std::vector<PigmentEntry> in_order(const std::vector<PigmentEntry>& map) {
-  std::vector<PigmentEntry> all;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const double reached = all.empty() ? map[i].at : all.back().at;
-    if (map[i].at < reached) continue;
-    if (i > 0 && map[i - 1].at < reached && map[i].at > reached) {
-      PigmentEntry begin = map[i - 1];
-      if (begin.pigment == nullptr && map[i].pigment == nullptr)
-        begin.color = blend(begin.color, map[i].color, (reached - begin.at) / (map[i].at - begin.at));
-      begin.at = reached;
-      all.push_back(std::move(begin));
-    }
-    all.push_back(map[i]);
-  }
-  return all;
+/// An entry of a map between two others.
+PigmentEntry entry_at(double at, PigmentEntry before, const PigmentEntry& after) {
+  if (before.pigment == nullptr && after.pigment == nullptr && after.at > before.at)
+    before.color = blend(before.color, after.color, (at - before.at) / (after.at - before.at));
+  before.at = at;
+  return before;
 }
 
 /// The colours of a pattern without a map: greys, but for some. As seen in 3.7.0.10.
@@ -108,14 +96,14 @@ class PigmentReader {
   void step(Arguments& a, Pigment& p) {
     const std::string_view word = a.peek_word();
     if (word == "average") {
-      p.is_average = true, p.pattern = {}, p.entries.clear();
+      p.is_average = p.is_stated = true, p.pattern = {}, p.entries.clear();
       p.pattern.word = a.take_word(word) ? "average" : "", p.pattern.where = a.where();
       return;
     }
     const Node before = p.pattern.own;
     const Block* const object = a.peek_block();
     if (patterns_.take(a, p.pattern)) {
-      if (p.pattern.own != before) p.is_average = false, p.entries.clear();
+      if (p.pattern.own != before) p.is_average = false, p.is_stated = true, p.entries.clear();
       if (p.pattern.own != before && p.pattern.word == "object") read_sides(*object, p);
       return;
     }
@@ -124,18 +112,19 @@ class PigmentReader {
       a.take();
     } else if (a.is_numbers()) {
       const PovColor color = a.color("a colour");
+      p.is_stated = true, p.is_black = false;
       if (p.pattern.is_list)
         p.entries.push_back({0, color, nullptr});
       else
         p.solid = color, p.pattern.word = {};
     } else if (word == "filter" || word == "transmit") {
       a.take();
-      a.take_word("all");
+      const bool all = a.take_word("all");
       const double part = a.is_numbers() ? a.number("a number") : 0;
-      if (word == "filter")
-        p.solid.filter = p.filter_all = part;
-      else
-        p.solid.transmit = p.transmit_all = part;
+      // Without a colour before them these make a black one.
+      if (!all && !p.is_black) p.solid = {}, p.pattern.word = {}, p.is_black = true;
+      p.is_stated = true;
+      (word == "filter" ? p.solid.filter : p.solid.transmit) = part;
     } else {
       a.take();
     }
@@ -152,9 +141,9 @@ class PigmentReader {
                k == "density_map") {
       p.entries.clear();
       read_map(block, p);
-      if (!p.is_average) p.entries = in_order(p.entries);
+      if (!p.is_average) p.entries = in_order(p.entries, entry_at);
     } else if (k == "image_map") {
-      p.is_average = false, p.entries.clear();
+      p.is_average = false, p.is_stated = true, p.entries.clear();
       patterns_.take_image(block, p.pattern);
       image_opacity(block, p);
     }

@@ -28,8 +28,33 @@ struct Pigment {
   bool lists_pigments = false;              ///< the entries of a list are pigments, not colours
   bool is_average = false;                  ///< the mean of the entries, whose `at` are weights
   double filter_all = 0, transmit_all = 0;  ///< of an image
+  bool is_stated = false;  ///< a block named a colour, a pattern or an image, not only changes
+  bool is_black = false;   ///< the colour is what `filter` and `transmit` alone make
   std::string name;
 };
+
+/// A map whose places ascend and that shows the same. POV-Ray shows the last entry from its place on. Below
+/// it looks for the first place that is not below the value, and blends from the entry before it, wherever
+/// that is; so an entry below others shows nothing itself. `entry_at`(place, before, after): one between two.
+template <class Entry, class EntryAt>
+std::vector<Entry> in_order(const std::vector<Entry>& map, EntryAt&& entry_at) {
+  std::vector<Entry> all;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double reached = all.empty() ? map[i].at : all.back().at;
+    if (map[i].at < reached) continue;
+    if (i > 0 && map[i - 1].at < reached && map[i].at > reached)
+      all.push_back(entry_at(reached, map[i - 1], map[i]));
+    all.push_back(map[i]);
+  }
+  if (map.empty() || map.back().at >= all.back().at) return all;
+  const double end = map.back().at;
+  std::size_t after = 0;
+  while (all[after].at <= end) ++after;
+  Entry last = entry_at(end, all[after > 0 ? after - 1 : 0], all[after]);
+  all.resize(after);
+  all.push_back(std::move(last)), all.push_back(map.back());
+  return all;
+}
 
 /// Reads a pigment on top of what is known of it.
 void read_pigment(Context& context, const Block& block, Pigment& pigment);

@@ -95,7 +95,10 @@ class TextureReader {
     if (pattern.is_none() || entries.empty()) return;
     while (pattern.is_list && entries.size() < default_colors(pattern).size()) entries.push_back({});
     if (!pattern.is_list && pattern.word != "average")
-      std::ranges::stable_sort(entries, {}, &TextureEntry::at);
+      entries = in_order(entries, [](double at, TextureEntry before, const TextureEntry&) {
+        before.at = at;
+        return before;
+      });
     look.pattern = std::move(pattern), look.entries = std::move(entries), look.layers.clear();
   }
 
@@ -110,13 +113,18 @@ class TextureReader {
     if (block.keyword == "texture" || block.keyword == "material") return read(block, look);
     if (block.keyword == "material_map")
       return context_.tell("material_map", block.where, "'material_map' has no meaning here");
-    // Parts of what is not plain change all of it.
-    for (Look& layer : look.layers) read_part(block, layer);
+    // Of layers the uppermost is changed, of textures in a pattern all.
+    if (!look.layers.empty()) read_part(block, look.layers.back());
     for (TextureEntry& entry : look.entries) read_part(block, entry.look);
     if (!look.is_plain()) return;
     if (block.keyword == "pigment") {
-      look.pigment = Pigment{};
-      read_pigment(context_, block, look.pigment);
+      Pigment stated;
+      read_pigment(context_, block, stated);
+      // What names no pigment changes the one that is there.
+      if (stated.is_stated)
+        look.pigment = std::move(stated);
+      else
+        read_pigment(context_, block, look.pigment);
     } else if (block.keyword == "normal") {
       look.normal = Normal{};
       read_normal(context_, block, look.normal);
@@ -242,6 +250,15 @@ Look look_of(Context& context, const std::vector<LookItem>& items,
     Moves moves;
     if (item.to_texture.is_invertible() && !(item.to_texture == Affine{}))
       moves.add({Move::Kind::matrix, {}, item.to_texture.inverse(), {}});
+    if (k == "pigment" && !own.pigment.is_stated) {
+      // It changes the pigment that is there, where the block stands.
+      Moves there;
+      if (!moves.empty()) there.add({Move::Kind::matrix, {}, item.to_texture, {}});
+      top.move_in_space(there);
+      read_pigment(context, *item.block, top.pigment);
+      top.move_in_space(moves), is_first = false;
+      continue;
+    }
     own.move_in_space(moves);
     if (k == "pigment")
       top.pigment = std::move(own.pigment);

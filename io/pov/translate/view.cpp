@@ -169,7 +169,7 @@ Node camera_node(Context& context, const Block* block) {
   look(context, where, c);
   if (c.orthographic() && (c.has_angle || !c.has_size)) {
     // As wide as the view in perspective at what it looks at.
-    const double distance = c.look_at ? length(*c.look_at - c.location) : before;
+    const double distance = length(c.look_at.value_or(Vec3d{0, 0, 1}) - c.location);
     double scale = before > 0 ? distance / before : 1;
     if (c.angle) scale = 2 * distance * std::tan(*c.angle / 2 * kRadians) / length(c.right);
     c.right = c.right * scale, c.up = c.up * scale;
