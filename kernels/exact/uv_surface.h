@@ -148,6 +148,12 @@ struct UvSurface {
     return sum > 0;
   }
 
+  /// Whether two places of a ray are the same but for the rounding of hits.
+  static bool is_near(const Ray& ray, double a, double b) {
+    const double along = max_component(abs(Vec3d(ray.direction)));
+    return std::abs(a - b) * along <= 0x1p-23 * (max_component(abs(Vec3d(ray.origin))) + std::abs(b) * along);
+  }
+
   static SurfaceInteraction interaction(const Pool& pool, std::size_t i, const Ray& ray, const Hit& hit) {
     const E& e = pool.elements[i];
     const ExactFrame& frame = pool.frames[i];
@@ -161,14 +167,19 @@ struct UvSurface {
           (best == nullptr || std::abs(found[k].t - hit.t) < std::abs(best->t - hit.t)))
         best = &found[k];
     SurfaceInteraction s;
-    // Whoever made up this hit gets a point on the ray.
-    const double t = best != nullptr ? best->t : hit.t;
-    UvPoint at{line.p + line.u * ((t - line.shift) / line.scale), {}, {}, {0, 0}, {}, {}};
+    // Whoever made up this hit gets a point on the ray. So does a hit of which rounding lets this line, which
+    // is that of the ray in the world, not in an instance, find only another crossing with the fold that has
+    // it.
+    const bool is_found = best != nullptr && is_near(ray, best->t, hit.t);
+    const double t = is_found ? best->t : hit.t;
+    const Vec3d on_ray = line.p + line.u * ((t - line.shift) / line.scale);
+    UvPoint at{on_ray, {}, {}, {0, 0}, {}, {}};
     Vec3d n = line.u * static_cast<double>(hit.v);
     if (best != nullptr) {
       at = S::point(e, piece, best->u, best->v);
       const Vec3d own = normal_at(e, piece, best->u, best->v, at);
       if (dot(own, own) > 0) n = e.is_flipped ? -own : own;
+      if (!is_found) at.p = on_ray;
     }
     const Vec3d point = frame.to_world.point(at.p);
     set_position(s, point, ray, t, 0x1p-44 * (length(point) + stretch(frame.to_world)));

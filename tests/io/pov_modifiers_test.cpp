@@ -425,6 +425,24 @@ TEST(PovModifiers, AnOrthographicViewIsAsHighAsItIsFar) {
             scene_of("camera { orthographic location -8*z right 11.97*x up 9*y } sphere { 0, 1 }"));
 }
 
+// The slope of a bump_map is the difference of neighbouring pixels, at any size.
+TEST(PovModifiers, PixelsOfBumpMapsAreSteps) {
+  const TempDir dir;
+  const auto gain = [&](int side, const std::string& moves) {
+    std::string pixels;
+    for (int i = 0; i < side * side; ++i) pixels += std::to_string(i % side) + " ";
+    const std::string size = std::to_string(side);
+    dir.write("ramp.pgm", "P2 " + size + " " + size + " 255 " + pixels);
+    const std::string text =
+        "#version 3.7; sphere { 0, 1 normal { bump_map { pgm \"ramp.pgm\" bump_size 6 } " + moves + " } }";
+    const std::string scene = yaml_text(*read_pov_tree(dir.write("scene.pov", text), {}, {}).root);
+    return std::stod(scene.substr(scene.find("gain: ") + 6));
+  };
+  EXPECT_NEAR(gain(16, ""), 6.0 / 16, 1e-6);
+  EXPECT_NEAR(gain(64, ""), 6.0 / 64, 1e-6);
+  EXPECT_NEAR(gain(64, "scale 3"), 6.0 / 64 * 3, 1e-6);
+}
+
 // Each layer has its own finish; light of those below is seen through those above.
 TEST(PovModifiers, LayersShineThroughEachOther) {
   const std::string room =

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/error.h"
+#include "io/image/image.h"
 #include "io/pov/translate/pigment.h"
 
 namespace oktett::pov {
@@ -133,6 +136,21 @@ double height_at(const std::vector<NormalEntry>& map, double at) {
   return map.back().height;
 }
 
+/// How strong heights of an image are: POV-Ray takes the difference of neighbouring pixels for the slope,
+/// however long a pixel is.
+double strength_of_image(const YamlNode& image) {
+  for (std::size_t i = 0; i + 1 < image.items.size(); i += 2) {
+    if (image.items[i]->text != "file") continue;
+    try {
+      const Picture picture = read_image(image.items[i + 1]->text);
+      return 1 / std::sqrt(static_cast<double>(picture.width) * picture.height);
+    } catch (const Error&) {
+      // Whoever shows the image says what is wrong with it.
+    }
+  }
+  return kStrength;
+}
+
 Node slopes_node(Context& context, const Normal& n) {
   Tree& tree = context.tree;
   const Place& where = n.pattern.where;
@@ -193,9 +211,10 @@ Node normal_node(Context& context, const Normal& n, double scale) {
   const Node node = pattern_node(context, p, values);
   const Node copy = tree.map(p.where);
   copy->items = node->items;
-  const bool has_own = n.slopes.empty();
-  tree.put(copy, "gain",
-           tree.number(p.where, (has_own ? strength_of(p.word) : kStrength) * n.amount * scale));
+  const double strength = p.image != nullptr ? strength_of_image(*p.image)
+                          : n.slopes.empty() ? strength_of(p.word)
+                                             : kStrength;
+  tree.put(copy, "gain", tree.number(p.where, strength * n.amount * scale));
   return copy;
 }
 
