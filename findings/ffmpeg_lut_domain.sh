@@ -3,7 +3,8 @@
 #
 # One would guess: a .cube file with DOMAIN_MIN -1 and DOMAIN_MAX 1, or 0 and 0.5, whose entries are the colours themselves, leaves each colour of
 # its domain as it is. OpenColorIO 2.1.2 does that.
-# What happens: filter lut3d of FFmpeg 5.1.9 (Debian 12) and 7.1.5 (Debian 13) makes 0.1 of it -0.9 with the first file and 0.05 with the second, without a warning.
+# What happens: filter lut3d of FFmpeg 5.1.9 (Debian 12) and 7.1.5 (Debian 13) makes 0.1 of it -0.9 with the first file and 0.05 with the second,
+# without a warning.
 # A domain of 0 to 4 is kept. (The least of a domain is not subtracted, and a scale of more than 1 is cut to 1.)
 # Why a user of a ray tracer meets it: tables for tone mapping and film colours are made for radiances or logarithms of them, so for
 # domains of their own. Frames in floats become a dark or black film.

@@ -3,8 +3,8 @@
 #
 # One would guess: a height field is the same terrain, whether its first row is the northernmost or the southernmost, if the file says
 # which; so it has the same slopes, aspects and shades. gdallocationinfo gives the same heights at the same places.
-# What happens: gdaldem of GDAL 3.6.2 (Debian 12) and 3.10.3 (Debian 13) gives an aspect of 206.6 degrees, towards the south-west, to rows from north to south,
-# and of 333.4, towards the north-west, to rows from south to north, with each of its two formulas, without a warning. Slope and hillshade
+# What happens: gdaldem of GDAL 3.6.2 (Debian 12) and 3.10.3 (Debian 13) gives an aspect of 206.6 degrees, towards the south-west, to rows
+# from north to south, and of 333.4, towards the north-west, to rows from south to north, with each of its two formulas, without a warning. Slope and hillshade
 # are the same for both.
 # Why a user of a ray tracer meets it: height fields of simulations and of point clouds begin in the south. Their sunny slopes become
 # shady ones, if light or plants are placed by aspect.

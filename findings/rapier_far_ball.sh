@@ -3,8 +3,8 @@
 #
 # One would guess: numbers of 32 bits cost some digits of the distance, for a ball no more than for a capsule of the same radius, whose
 # round side the same ray hits at the same place: 4999 through the middle, 4999.2 for a ray 0.6 beside it.
-# What happens: Rapier 0.21.0 answers 5000 for the ball, twice: the middle with a normal that is not a number, and 0.6 beside it a point within the ball with
-# a normal at a right angle to the ray. From 3000 away both rays hit at 2999, from 1000 away the second at 999.209 for 999.2. The
+# What happens: Rapier 0.21.0 answers 5000 for the ball, twice: the middle with a normal that is not a number, and 0.6 beside it a point within
+# the ball with a normal at a right angle to the ray. From 3000 away both rays hit at 2999, from 1000 away the second at 999.209 for 999.2. The
 # capsule is right to 0.001 at all of these distances. (Squares of the distance to the middle are subtracted.)
 # Why a user of a ray tracer meets it: a ball of 1 centimetre seen from 50 metres, a lamp or an atom in a large scene. It becomes a flat disc, and
 # what is reflected in it is black or not a number.

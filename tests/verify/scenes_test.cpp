@@ -19,6 +19,13 @@ TEST(Scenes, RandomScenesAreRight) {
   EXPECT_GT(t.kinds.size(), known_kinds().size() / 2);
 }
 
+/// A patch in nested instances is hit next to a fold, where the line of the ray in the world finds another
+/// crossing.
+TEST(Scenes, HitsNextToFoldsLieOnTheirRays) {
+  const SceneTally t = verify_scenes(1, available_isas(), 7845142906766215778u);
+  EXPECT_EQ(t.wrong(), 0u) << t.failure;
+}
+
 /// A known shape that stands elsewhere than its oracle believes.
 TEST(Scenes, OraclesOfEveryKindFindALie) {
   for (std::size_t kind = 0; kind < known_kinds().size(); ++kind) {
