@@ -167,9 +167,8 @@ struct UvSurface {
           (best == nullptr || std::abs(found[k].t - hit.t) < std::abs(best->t - hit.t)))
         best = &found[k];
     SurfaceInteraction s;
-    // Whoever made up this hit gets a point on the ray. So does a hit of which rounding lets this line, which
-    // is that of the ray in the world, not in an instance, find only another crossing with the fold that has
-    // it.
+    // A hit that is not found again has its point on the ray. Somebody made it up; or it was found by the
+    // line in an instance, and next to a fold that of the ray in the world has another crossing.
     const bool is_found = best != nullptr && is_near(ray, best->t, hit.t);
     const double t = is_found ? best->t : hit.t;
     const Vec3d on_ray = line.p + line.u * ((t - line.shift) / line.scale);

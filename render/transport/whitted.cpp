@@ -76,7 +76,7 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   InteractionBlock::put(c.filter, k, passing_color(p));
   InteractionBlock::put(c.ng, k, p.ng);
   InteractionBlock::put(c.ns, k, p.ns);
-  InteractionBlock::put(c.mirror_color, k, mirror_color(p));
+  Color mirrored = mirror_color(p);
   if (p.values.brilliance != 1 || p.values.grain != 0) {
     c.uneven |= std::uint64_t{1} << k;
     c.brilliance[k] = p.values.brilliance;
@@ -93,10 +93,9 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   if (p.values.film != 0) {
     c.filmed |= std::uint64_t{1} << k;
     c.film[k] = p.values.film, c.film_thickness[k] = p.values.film_thickness;
-    InteractionBlock::put(
-        c.mirror_color, k,
-        mirror_color(p) * film_color(p.values.film, p.values.film_thickness, 2 * arriving_cosine(p)));
+    mirrored = mirrored * film_color(p.values.film, p.values.film_thickness, 2 * arriving_cosine(p));
   }
+  InteractionBlock::put(c.mirror_color, k, mirrored);
   if (p.material->specular_fades && !p.material->principled) c.fading |= std::uint64_t{1} << k;
   c.diffuse[k] = p.values.diffuse;
   c.specular[k] = p.values.specular;

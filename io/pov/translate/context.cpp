@@ -224,4 +224,12 @@ std::string find_file(const Context& context, const Place& where, const std::str
   context.fail(where, quote(name, 1000) + ": " + why_unreadable(beside(0)));
 }
 
+Moves moves_in(Context& context, const Block& block) {
+  Moves moves;
+  Arguments a(context, block);
+  while (!a.at_end())
+    if (!take_moves(context, a, moves)) a.take();
+  return moves;
+}
+
 }  // namespace oktett::pov

@@ -52,6 +52,7 @@ struct Context {
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each
   /// declaration.
   std::map<const Block*, std::array<Vec3d, 2>> extents;
+  std::map<std::string, double> bump_strengths;  ///< of images by their files, each read once
 
   /// Warns of what is not as POV-Ray has it, once for each `kind`.
   void tell(const std::string& kind, const Place& where, const std::string& message) {
@@ -143,6 +144,8 @@ struct Moves {
 /// Takes a transform that stands next: a word such as `translate` with its vector, or a block. Returns
 /// whether there was one.
 bool take_moves(Context& context, Arguments& arguments, Moves& moves);
+/// All transforms that stand in a block itself.
+Moves moves_in(Context& context, const Block& block);
 /// The value of `transform`; null if there are no moves.
 Node moves_node(Tree& tree, const Place& where, const Moves& moves);
 

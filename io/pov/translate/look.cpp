@@ -185,29 +185,30 @@ class MaterialWriter {
   }
 
   /// Of layers the one that is seen most.
-  static const Look& shown_layer(const Look& look) {
+  static std::size_t shown_layer(const Look& look) {
     double left = 1, most = -1;
-    const Look* shown = &look.layers.front();
+    std::size_t shown = 0;
     for (std::size_t i = look.layers.size(); i-- > 0;) {
       double opaque = 1;
       int count = 0;
       for_each_plain(look.layers[i], [&](const Look& plain) {
         opaque = (opaque * count + left_of(mean_of(plain.pigment))) / (count + 1), ++count;
       });
-      if (left * opaque > most) most = left * opaque, shown = &look.layers[i];
+      if (left * opaque > most) most = left * opaque, shown = i;
       left *= 1 - opaque;
     }
-    return *shown;
+    return shown;
   }
 
   /// Which plain looks have what is asked for.
   using Asked = std::function<bool(const Finish&)>;
+  static bool asks_nothing(const Finish&) { return false; }
 
   /// Of layers the uppermost that has what is asked for; else the one that is seen most.
   static std::size_t asked_layer(const Look& look, const Asked& asked) {
     for (std::size_t i = look.layers.size(); i-- > 0;)
       if (any(look.layers[i], asked)) return i;
-    return static_cast<std::size_t>(&shown_layer(look) - look.layers.data());
+    return shown_layer(look);
   }
 
   /// A value of the layers that have what is asked for.
@@ -240,7 +241,7 @@ class MaterialWriter {
   }
 
   Node number(const Look& look, const std::function<double(const Look&)>& of) {
-    return of_shown_layer(look, [&](const Look& l) { return tree_.number(where_, of(l)); });
+    return number(look, of, asks_nothing);
   }
 
   /// Colours of layers above each other: each is seen through what those above it let pass.
@@ -307,9 +308,7 @@ class MaterialWriter {
   }
 
   Node of_shown_layer(const Look& look, const PlainNode& plain) {
-    PlainNode layers;
-    layers = [&](const Look& l) { return in_pattern(shown_layer(l), plain, layers); };
-    return in_pattern(look, plain, layers);
+    return of_asked_layer(look, plain, asks_nothing);
   }
 
   Node heights(const Look& look) {

@@ -138,17 +138,18 @@ double height_at(const std::vector<NormalEntry>& map, double at) {
 
 /// How strong heights of an image are: POV-Ray takes the difference of neighbouring pixels for the slope,
 /// however long a pixel is.
-double strength_of_image(const YamlNode& image) {
-  for (std::size_t i = 0; i + 1 < image.items.size(); i += 2) {
-    if (image.items[i]->text != "file") continue;
-    try {
-      const Picture picture = read_image(image.items[i + 1]->text);
-      return 1 / std::sqrt(static_cast<double>(picture.width) * picture.height);
-    } catch (const Error&) {
-      // Whoever shows the image says what is wrong with it.
-    }
+double strength_of_image(Context& context, const YamlNode& image) {
+  const YamlNode* const file = find_value(image, "file");
+  if (file == nullptr) return kStrength;
+  const auto [known, is_new] = context.bump_strengths.try_emplace(file->text, kStrength);
+  if (!is_new) return known->second;
+  try {
+    const Picture picture = read_image(file->text);
+    known->second = 1 / std::sqrt(static_cast<double>(picture.width) * picture.height);
+  } catch (const Error&) {
+    // Whoever shows the image says what is wrong with it.
   }
-  return kStrength;
+  return known->second;
 }
 
 Node slopes_node(Context& context, const Normal& n) {
@@ -211,7 +212,7 @@ Node normal_node(Context& context, const Normal& n, double scale) {
   const Node node = pattern_node(context, p, values);
   const Node copy = tree.map(p.where);
   copy->items = node->items;
-  const double strength = p.image != nullptr ? strength_of_image(*p.image)
+  const double strength = p.image != nullptr ? strength_of_image(context, *p.image)
                           : n.slopes.empty() ? strength_of(p.word)
                                              : kStrength;
   tree.put(copy, "gain", tree.number(p.where, strength * n.amount * scale));

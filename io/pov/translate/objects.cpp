@@ -95,6 +95,16 @@ bool ObjectWriter::holds(std::map<const Block*, bool>& known, const Block& block
   return has;
 }
 
+/// The objects that stand in a block.
+static std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) {
+  std::vector<std::shared_ptr<const Block>> objects;
+  for (const Element& e : block.elements)
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
+      objects.push_back(*inner);
+  return objects;
+}
+
 void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
   Outer outer;
   outer.to_world = moves.all, outer.default_texture = block->default_texture;
@@ -137,6 +147,13 @@ ObjectWriter::Asked ObjectWriter::add_asked(const std::shared_ptr<const Block>& 
 }
 
 void ObjectWriter::add_light(const std::shared_ptr<const Block>& block, const Affine& to_world) {
+  const std::vector<std::shared_ptr<const Block>> inner = objects_in(*block);
+  if (!inner.empty()) {
+    // One of a union of lights is that union.
+    Moves moves = moves_in(context_, *block);
+    if (!(to_world == Affine{})) moves.add({Move::Kind::matrix, {}, to_world, block->where});
+    return add(inner[0], moves);
+  }
   const LightBody body = pov::add_light(context_, *block, to_world);
   if (!body.object) return;
   Moves moves = body.moves;
@@ -239,25 +256,6 @@ ObjectWriter::Maybe ObjectWriter::build_object(const Block& block, const Outer& 
   }
   if (k == "light_group") return build_light_group(block, children, m, outer);
   return build_children(block, children, m, outer);
-}
-
-/// The objects that stand in a block.
-static std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) {
-  std::vector<std::shared_ptr<const Block>> objects;
-  for (const Element& e : block.elements)
-    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
-        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
-      objects.push_back(*inner);
-  return objects;
-}
-
-/// The transforms that stand in a block `clipped_by` or `bounded_by` itself.
-static Moves moves_in(Context& context, const Block& block) {
-  Moves moves;
-  Arguments a(context, block);
-  while (!a.at_end())
-    if (!take_moves(context, a, moves)) a.take();
-  return moves;
 }
 
 /// Whether all that bounds an object is a shape that scene files can look through.
@@ -375,10 +373,7 @@ ObjectWriter::Maybe ObjectWriter::build_shape(const Block& block, const Outer& o
   ShapeLimits limits{limits_of(context_, block, "clipped_by"), limits_of(context_, block, "bounded_by"),
                      is_bounded_by_windows(block)};
   // What encloses it, seen from its space.
-  Moves moves;
-  Arguments scan(context_, block);
-  while (!scan.at_end())
-    if (!take_moves(context_, scan, moves)) scan.take();
+  const Moves moves = moves_in(context_, block);
   if (moves.all.is_invertible()) limits.within = limits.within.meet(outer.within.moved(moves.all.inverse()));
   const bool is_clipped = std::ranges::any_of(block.elements, [](const Element& e) {
     const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
@@ -514,13 +509,15 @@ ObjectWriter::Maybe ObjectWriter::build_light_group(const Block& block,
   const std::size_t before = context_.light_keys.size();
   const Maybe built = build_children(block, children, m, outer);
   if (asked_) return built;
-  if (!built) context_.lights->items.resize(before), context_.light_keys.resize(before);
-  if (!built || outer.operand || context_.light_groups == kMostLightGroups) {
-    if (built)
-      context_.tell("light_group", block.where,
-                    fmt::format("in combinations, and beyond {} of them, lights of a 'light_group' light all "
-                                "objects",
-                                kMostLightGroups));
+  if (!built) {
+    context_.lights->items.resize(before), context_.light_keys.resize(before);
+    return built;
+  }
+  if (outer.operand || context_.light_groups == kMostLightGroups) {
+    context_.tell("light_group", block.where,
+                  fmt::format("in combinations, and beyond {} of them, lights of a 'light_group' light all "
+                              "objects",
+                              kMostLightGroups));
     return built;
   }
   ++context_.light_groups;
@@ -605,21 +602,19 @@ void ObjectWriter::set_hollow(Node object, const Place& where) {
 /// Appends operations to the transform that an object has.
 void ObjectWriter::extend_transform(Node object, const Moves& moves) {
   Tree& tree = context_.tree;
-  for (std::size_t i = 0; i + 1 < object->items.size(); i += 2) {
-    if (object->items[i]->text != "transform") continue;
-    const YamlNode* const old = object->items[i + 1];
-    const Node list = tree.list(moves.list[0].where);
-    if (old->kind == YamlKind::sequence)
-      list->items = old->items;
-    else
-      list->items = {old};
-    const Node more = moves_node(tree, moves.list[0].where, moves);
-    if (more->kind == YamlKind::sequence)
-      list->items.insert(list->items.end(), more->items.begin(), more->items.end());
-    else
-      list->items.push_back(more);
-    object->items[i + 1] = list;
-  }
+  const YamlNode** const old = find_value(*object, "transform");
+  if (old == nullptr) return;
+  const Node list = tree.list(moves.list[0].where);
+  if ((*old)->kind == YamlKind::sequence)
+    list->items = (*old)->items;
+  else
+    list->items = {*old};
+  const Node more = moves_node(tree, moves.list[0].where, moves);
+  if (more->kind == YamlKind::sequence)
+    list->items.insert(list->items.end(), more->items.begin(), more->items.end());
+  else
+    list->items.push_back(more);
+  *old = list;
 }
 
 // ---- Combinations.

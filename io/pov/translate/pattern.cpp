@@ -154,12 +154,10 @@ std::vector<PovColor> default_colors(const PovPattern& pattern) {
 // ---- Reading.
 
 void PatternReader::set(Node map, std::string_view key, Node value) {
-  for (std::size_t i = 0; i + 1 < map->items.size(); i += 2)
-    if (map->items[i]->text == key) {
-      map->items[i + 1] = value;
-      return;
-    }
-  context_.tree.put(map, key, value);
+  if (const YamlNode** const old = find_value(*map, key))
+    *old = value;
+  else
+    context_.tree.put(map, key, value);
 }
 
 void PatternReader::put_vector(PovPattern& p, std::string_view key, const Vec3d& value) {
@@ -591,16 +589,14 @@ static Node laid_image(Tree& tree, const PovPattern& p) {
 
 /// Lays an image around a ring from its inside on, as in POV-Ray; here it is from the outside.
 static void from_inside(Tree& tree, Node keys) {
-  for (std::size_t i = 0; i + 1 < keys->items.size(); i += 2) {
-    const YamlNode& shown = *keys->items[i + 1];
-    if (keys->items[i]->text != "of" || shown.kind != YamlKind::map) continue;
-    const Place top;
-    const Node image = tree.map(top), offset = tree.list(top);
-    image->items = shown.items;
-    for (const double number : {0.0, 0.5}) Tree::push(offset, tree.number(top, number));
-    tree.put(image, "offset", offset);
-    keys->items[i + 1] = image;
-  }
+  const YamlNode** const shown = find_value(*keys, "of");
+  if (shown == nullptr || (*shown)->kind != YamlKind::map) return;
+  const Place top;
+  const Node image = tree.map(top), offset = tree.list(top);
+  image->items = (*shown)->items;
+  for (const double number : {0.0, 0.5}) Tree::push(offset, tree.number(top, number));
+  tree.put(image, "offset", offset);
+  *shown = image;
 }
 
 /// The same pattern by Oktett's u and v.

@@ -139,11 +139,7 @@ class ShapeMaker {
   /// unfolds what they have become.
   std::array<bool, 3> mirrored_axes() const {
     std::array<bool, 3> axes{};
-    Moves moves;
-    Arguments scan(context_, a_.block());
-    while (!scan.at_end())
-      if (!take_moves(context_, scan, moves)) scan.take();
-    for (const Move& move : moves.list) {
+    for (const Moves moves = moves_in(context_, a_.block()); const Move& move : moves.list) {
       if (move.kind == Move::Kind::rotate || move.kind == Move::Kind::matrix) break;
       for (int k = 0; k < 3 && move.kind == Move::Kind::scale; ++k)
         if (move.v[k] < 0) axes[static_cast<std::size_t>(k)] ^= true;

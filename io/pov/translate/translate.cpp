@@ -42,15 +42,7 @@ void read_statement(Context& context, const std::shared_ptr<const Block>& block,
                     Surroundings& s) {
   const std::string_view k = block->keyword;
   if (is_object(k)) return objects.add(block);
-  if (k == "light_source") {
-    // One of a union of lights is that union.
-    if (const auto* const inner = block->elements.empty()
-                                      ? nullptr
-                                      : std::get_if<std::shared_ptr<const Block>>(&block->elements[0].value);
-        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
-      return objects.add(*inner);
-    return objects.add_light(block, {});
-  }
+  if (k == "light_source") return objects.add_light(block, {});
   if (k == "global_settings") return read_global_settings(context, *block, s);
   if (k == "background") return read_background(context, *block, s);
   if (k == "sky_sphere") {

@@ -70,10 +70,16 @@ void Tree::put(Node map, std::string_view key, Node value) {
   map->items.push_back(name), map->items.push_back(value);
 }
 
-bool has_key(const YamlNode& map, std::string_view key) {
+const YamlNode** find_value(YamlNode& map, std::string_view key) {
   for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
-    if (map.items[i]->text == key) return true;
-  return false;
+    if (map.items[i]->text == key) return &map.items[i + 1];
+  return nullptr;
+}
+
+const YamlNode* find_value(const YamlNode& map, std::string_view key) {
+  for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
+    if (map.items[i]->text == key) return map.items[i + 1];
+  return nullptr;
 }
 
 }  // namespace oktett::pov

@@ -56,7 +56,9 @@ class Tree {
   std::vector<std::unique_ptr<YamlFile>> files_;
 };
 
-/// Whether a map has an entry of this name.
-bool has_key(const YamlNode& map, std::string_view key);
+/// The value of an entry of a map, which may be replaced; null if there is none of this name.
+const YamlNode** find_value(YamlNode& map, std::string_view key);
+const YamlNode* find_value(const YamlNode& map, std::string_view key);
+inline bool has_key(const YamlNode& map, std::string_view key) { return find_value(map, key) != nullptr; }
 
 }  // namespace oktett::pov
