@@ -126,7 +126,7 @@ class ExactChecker {
       }
       if (crossing != AlongRay::Crossing::yes) return;
     }
-    check_surface(ray, hit, truth, next);
+    check_surface(ray, hit, truth, f.slack(hit.t), next);
   }
 
   void check_list(const Ray& ray, const AlongRay& f, const std::vector<long double>& truth) {
@@ -147,8 +147,9 @@ class ExactChecker {
     fail(ray, fmt::format("all_hits lists {} crossings, the oracle {}", list.size(), truth.size()));
   }
 
-  /// Moved off the surface by its error bound, the position must be off it.
-  void check_surface(const Ray& ray, const Hit& hit, const std::vector<long double>& truth, RayBatch* next) {
+  /// Moved off the surface by its error bound, the position must be off it. `slack` is that of the hit's t.
+  void check_surface(const Ray& ray, const Hit& hit, const std::vector<long double>& truth, long double slack,
+                     RayBatch* next) {
     const SurfaceInteraction s = surface_interaction(*trial_.accel, ray, hit);
     const auto f = [&](const auto& p) { return trial_.oracle.f(mapped(trial_.to_own, Vec3l(p))); };
     const Vec3f n = s.geometric_normal;
@@ -164,9 +165,15 @@ class ExactChecker {
     }
     // Where a function has a pole within the bound, no number tells how much it bends.
     const bool creased = !(bend <= 0x1p-6L * slope);
-    if (creased && !(above > 0 && below < 0) && passes_through(f, s, out, in, ray, truth)) {
-      ++tally_.creased;
-      return;
+    if (creased && !(above > 0 && below < 0)) {
+      std::vector<Vec3l> near, crossings;
+      const Vec3l origin(Vec3d(ray.origin)), direction(Vec3d(ray.direction));
+      for (int i = -16; i <= 16; ++i) near.push_back(origin + direction * (hit.t + slack * i / 16));
+      for (const long double t : truth) crossings.push_back(origin + direction * t);
+      if (passes_through(f, s, out, in, near, crossings)) {
+        ++tally_.creased;
+        return;
+      }
     }
     const long double allowed = std::min(std::abs(above - here), std::abs(here - below));
     if (allowed > 0 && !creased)
@@ -185,21 +192,24 @@ class ExactChecker {
     next->push_back({outwards ? out : in, 0, Vec3f(d), std::numeric_limits<float>::infinity()});
   }
 
-  /// Whether a surface with an edge or a tip passes through the box of the error bound: a crossing that the
-  /// oracle knows lies in it, or ever more samples find both sides.
+  /// Whether a surface with an edge or a tip passes through the box of the error bound: one of the
+  /// `crossings` that the oracle knows lies in it, or points in it have both signs: those from `out` to `in`,
+  /// those of the ray `near` the hit, which find slivers that are thinner than the others' distance, or ever
+  /// more of a grid.
   template <class F>
   static bool passes_through(const F& f, const SurfaceInteraction& s, const Vec3f& out, const Vec3f& in,
-                             const Ray& ray, const std::vector<long double>& truth) {
+                             const std::vector<Vec3l>& near, const std::vector<Vec3l>& crossings) {
+    const auto within = [&](const Vec3l& p) {
+      bool all = true;
+      for (int k = 0; k < 3; ++k) all &= std::abs(p[k] - s.position[k]) <= s.position_error[k];
+      return all;
+    };
+    if (std::ranges::any_of(crossings, within)) return true;
     bool negative = false, positive = false;
     const auto look = [&](const auto& p) { (f(p) < 0 ? negative : positive) = true; };
     for (int i = 0; i <= 16; ++i) look(in + (out - in) * (static_cast<float>(i) / 16));
-    // A sliver may be thinner than all samples.
-    for (const long double t : truth) {
-      const Vec3l p = Vec3l(Vec3d(ray.origin)) + Vec3l(Vec3d(ray.direction)) * t;
-      bool within = true;
-      for (int k = 0; k < 3; ++k) within &= std::abs(p[k] - s.position[k]) <= s.position_error[k];
-      if (within) return true;
-    }
+    for (const Vec3l& p : near)
+      if (within(p)) look(p);
     for (int side = 2; side <= 16 && !(negative && positive); side *= 2) {
       const int row = 2 * side + 1;
       const auto at = [&](int axis, int i) {
