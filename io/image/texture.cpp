@@ -85,8 +85,13 @@ class FileTextures final : public TextureSampler {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return {1, 1, 1};
     const TurnedTexture& texture = textures_[index];
-    return image->color(patch_of(texture, uv, dx, dy), texture.lookup) * texture.gain +
-           Color{texture.base, texture.base, texture.base};
+    const TexturePatch patch = patch_of(texture, uv, dx, dy);
+    const auto shown = [&]() -> Color {
+      if (texture.channel != ImageChannel::alpha) return image->color(patch, texture.lookup);
+      const float alpha = image->channel(ImageChannel::alpha, patch, texture.lookup);
+      return {alpha, alpha, alpha};
+    };
+    return shown() * texture.gain + Color{texture.base, texture.base, texture.base};
   }
 
   float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {

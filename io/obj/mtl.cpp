@@ -232,9 +232,12 @@ class MtlReader {
 
   void read_texture(MtlLine& line, std::uint32_t Material::*slot, Material& material) {
     const bool is_number = slot == &Material::opacity_texture || slot == &Material::bump_texture;
-    const std::optional<MtlTexture> texture =
+    std::optional<MtlTexture> texture =
         read_mtl_texture(line, directory_, is_number ? ImageChannel::luminance : ImageChannel::red);
     if (!texture) return;
+    // A colour shows all channels, and that alpha is a grey in its place is meant by no such file.
+    if (!is_number && texture->texture.channel == ImageChannel::alpha)
+      texture->texture.channel = ImageChannel::red;
     material.*slot = add_texture(*texture, line);
     if (slot == &Material::bump_texture) material.bump_scale = texture->bump_scale;
   }

@@ -259,6 +259,7 @@ TEST(Mtl, NumbersTakeTheChannelThatIsNamed) {
   EXPECT_EQ(channel(m.principled->coat_texture), ImageChannel::red);
   for (const std::uint32_t texture : {m.principled->sheen_texture, m.principled->coat_roughness_texture})
     EXPECT_EQ(channel(texture), ImageChannel::luminance);
+  EXPECT_EQ(load("newmtl a\nmap_Kd -imfchan m t.png\n").textures.at(0).channel, ImageChannel::red);
   const Mtl usual = load("newmtl a\nmap_d t.png\nmap_Bump u.png\nmap_Pr v.png\n");
   for (const Texture& texture : usual.textures) EXPECT_EQ(texture.channel, ImageChannel::luminance);
 }

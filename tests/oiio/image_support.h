@@ -1,12 +1,14 @@
 #pragma once
 /// \file Small pictures, and the kinds of errors, for the tests of image files.
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "render/picture.h"
@@ -32,6 +34,19 @@ inline Picture color_picture(std::uint32_t width, std::uint32_t height, float r,
   for (int c = 0; c < 4; ++c)
     picture.planes.push_back({names[c], PlaneType::half_float, Column<float>(pixels, values[c]), {}});
   return picture;
+}
+
+/// Writes 8-bit or float pixels, row by row from the top, and returns the path.
+template <class T>
+std::string write_pixels(const std::string& path, int width, int height, int channels,
+                         const std::vector<T>& pixels) {
+  const OIIO::TypeDesc type = sizeof(T) == 1 ? OIIO::TypeUInt8 : OIIO::TypeFloat;
+  OIIO::ImageSpec spec(width, height, channels, type);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  auto output = OIIO::ImageOutput::create(path);
+  EXPECT_TRUE(output && output->open(path, spec) && output->write_image(type, pixels.data()) &&
+              output->close());
+  return path;
 }
 
 /// The kind of the Error, of one line, that `work` must throw.

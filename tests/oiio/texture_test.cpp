@@ -15,6 +15,7 @@
 #include "io/image/color.h"
 #include "io/image/contents.h"
 #include "io/obj/obj.h"
+#include "tests/oiio/image_support.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
@@ -22,21 +23,9 @@ namespace oktett::texture_test {
 namespace {
 
 using test::TempDir;
+using test::write_pixels;
 
 constexpr Vec2f kNoChange{0, 0};
-
-/// Writes 8-bit or float pixels, row by row from the top.
-template <class T>
-std::string write_pixels(const std::string& path, int width, int height, int channels,
-                         const std::vector<T>& pixels) {
-  const OIIO::TypeDesc type = sizeof(T) == 1 ? OIIO::TypeUInt8 : OIIO::TypeFloat;
-  OIIO::ImageSpec spec(width, height, channels, type);
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  auto output = OIIO::ImageOutput::create(path);
-  EXPECT_TRUE(output && output->open(path, spec) && output->write_image(type, pixels.data()) &&
-              output->close());
-  return path;
-}
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -138,7 +127,9 @@ TEST(ImageTextures, ChannelsOfNumbers) {
     EXPECT_NEAR(textures.value(i, {0.3f, 0.6f}, kNoChange, kNoChange), static_cast<float>(expected[i]) / 255,
                 2e-4f)
         << i;
-  EXPECT_NEAR(textures.color(3, {0, 0}, kNoChange, kNoChange).y, srgb_to_linear(100 / 255.0f), 2e-4f);
+  // In place of a colour alpha is a grey; the other channels stand beside each other.
+  EXPECT_NEAR(textures.color(1, {0, 0}, kNoChange, kNoChange).z, srgb_to_linear(200 / 255.0f), 2e-4f);
+  EXPECT_NEAR(textures.color(3, {0, 0}, kNoChange, kNoChange).y, 50 / 255.0f, 2e-4f);
 }
 
 TEST(ImageTextures, LuminanceIsThatOfTheColorsAsStored) {

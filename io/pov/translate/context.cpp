@@ -5,10 +5,17 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/image/contents.h"
 #include "io/pov/read_pov.h"
 #include "io/yaml/utf8.h"
 
 namespace oktett::pov {
+
+bool Context::has_alpha(const std::string& file) {
+  const auto [known, is_new] = alphas_.try_emplace(file, false);
+  if (is_new) known->second = image_contents(file).alpha;
+  return known->second;
+}
 
 std::string Context::unique(std::set<std::string>& taken, std::string_view wanted) const {
   std::string name(wanted);

@@ -54,6 +54,9 @@ struct Context {
   std::map<const Block*, std::array<Vec3d, 2>> extents;
   std::map<std::string, double> bump_strengths;  ///< of images by their files, each read once
 
+  /// Whether an image lets light pass somewhere; false if it cannot be read.
+  bool has_alpha(const std::string& file);
+
   /// Warns of what is not as POV-Ray has it, once for each `kind`.
   void tell(const std::string& kind, const Place& where, const std::string& message) {
     if (told_.insert(kind).second) warn(where, message);
@@ -70,6 +73,7 @@ struct Context {
 
  private:
   std::set<std::string> told_;
+  std::map<std::string, bool> alphas_;  ///< of images by their files
 };
 
 /// A colour with what passes through, as pigments have it.

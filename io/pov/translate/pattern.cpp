@@ -213,6 +213,12 @@ bool PatternReader::take_block(Arguments& a, PovPattern& p) {
   if (is_image) {
     PovPattern image;
     take_image(*block, image);
+    if (image.has_alpha && has_word(*block, "use_alpha")) {
+      // The value is what passes through.
+      image = alpha_of(context_.tree, image);
+      for (const auto& [key, value] : {std::pair{"gain", -1.0}, {"base", 1.0}})
+        context_.tree.put(image.image, key, context_.tree.number(p.where, value));
+    }
     if (!image.key.empty()) of = pattern_node(context_, image, nullptr);
   } else {
     of = texture_of(*block);
@@ -540,6 +546,8 @@ void PatternReader::take_image(const Block& block, PovPattern& p) {
       decoded = !a.is_numbers() || a.number("a gamma") > 1.5;
     }
   }
+  if (p.image != nullptr && block.keyword != "bump_map")
+    p.has_alpha = context_.has_alpha((*find_value(*p.image, "file"))->text);
   // Where light is computed in the screen's gamma, decoded numbers are those of the file, too.
   if (p.image != nullptr && (!decoded || context_.gamma.is_encoded()))
     tree.put(p.image, "color_space", tree.word(p.where, "linear"));
@@ -612,6 +620,15 @@ static PovPattern laid_pattern(Tree& tree, const PovPattern& p) {
   moves.add({Move::Kind::matrix, {}, to_pov.inverse(), p.where});
   laid.move(moves);
   return laid;
+}
+
+PovPattern alpha_of(Tree& tree, const PovPattern& image) {
+  PovPattern alpha = image;
+  alpha.image = tree.map(image.where), alpha.own = tree.map(image.where);
+  alpha.image->items = image.image->items, alpha.own->items = image.own->items;
+  tree.put(alpha.image, "channel", tree.word(image.where, "alpha"));
+  *find_value(*alpha.own, "of") = alpha.image;
+  return alpha;
 }
 
 PovPattern repeated_image(const PovPattern& p) {

@@ -29,6 +29,7 @@ struct PovPattern {
   bool uses_uv = false;
   UvLayout uv;
   bool once = false;         ///< of an image: it is not repeated
+  bool has_alpha = false;    ///< of an image: light passes somewhere
   bool is_around = false;    ///< of an image: it lies around the y axis
   bool is_ring = false;      ///< and around a ring
   Vec3d direction{0, 1, 0};  ///< of a gradient
@@ -97,6 +98,9 @@ Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node und
 /// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
 /// its values are numbers.
 Node pattern_node(Context& context, const PovPattern& pattern, Node values);
+
+/// The alpha of an image as greys.
+PovPattern alpha_of(Tree& tree, const PovPattern& image);
 
 /// An image that is not repeated, as it repeats at places on the image.
 PovPattern repeated_image(const PovPattern& once);

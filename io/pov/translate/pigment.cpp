@@ -12,7 +12,7 @@ namespace oktett::pov {
 namespace {
 
 /// Pigments within each other that are read; deeper ones are their mean colour.
-constexpr unsigned kMostNested = kMostNestedTextures - 2;
+constexpr unsigned kMostNested = kMostNestedTextures - 4;
 /// Most places of a map in a scene file.
 constexpr std::size_t kMostPlaces = 256;
 
@@ -326,6 +326,35 @@ Node scaled(Tree& tree, const Place& where, const YamlNode& value, double factor
   return all;
 }
 
+Node image_node(Context& context, const Pigment& p, const ColorPart& part);
+
+/// An image with alpha: by it from what the image would show if all light passed to what it shows itself.
+Node seen_through(Context& context, const Pigment& p, const ColorPart& part) {
+  Pigment opaque = p;
+  opaque.pattern.has_alpha = false;
+  const auto at_alpha = [&](double alpha) {
+    Pigment pigment = opaque;
+    pigment.transmit_all += 1 - alpha;
+    return image_node(context, pigment, part);
+  };
+  Tree& tree = context.tree;
+  PovPattern mask;
+  mask.word = "image_pattern", mask.key = "brightness", mask.where = p.pattern.where;
+  mask.own = tree.map(mask.where, "of", pattern_node(context, alpha_of(tree, opaque.pattern), nullptr));
+  std::vector<double> alphas{0, 1};
+  // What is left of the colour is 0 up to the alpha at which all light passes.
+  const double clear = p.filter_all + p.transmit_all;
+  if (clear > 0 && clear < 1) alphas.insert(alphas.begin() + 1, clear);
+  const Node values = tree.list(mask.where), itself = at_alpha(1);
+  bool differ = false;
+  for (const double alpha : alphas) {
+    const Node shown = alpha < 1 ? at_alpha(alpha) : itself;
+    differ = differ || flow_text(*shown) != flow_text(*itself);
+    push_entry(tree, mask.where, values, alpha, shown);
+  }
+  return differ ? pattern_node(context, mask, values) : itself;
+}
+
 Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
   const PovColor white{{1, 1, 1}, p.filter_all, p.transmit_all},
       black{{0, 0, 0}, p.filter_all, p.transmit_all};
@@ -338,6 +367,8 @@ Node image_node(Context& context, const Pigment& p, const ColorPart& part) {
     return once_node(context, p.pattern, image_node(context, repeated, part),
                      part_node(tree, p.pattern.where, part, part({{0, 0, 0}, 0, 1})));
   }
+  if (p.pattern.has_alpha) return seen_through(context, p, part);
+  if (gain == 0) return part_node(tree, p.pattern.where, part, part(black));
   const Node node = pattern_node(context, p.pattern, nullptr);
   if (gain == 1 && base == 0) return node;
   // Other places may show the same node, so gain and base stand in a copy.
@@ -415,7 +446,8 @@ PovColor mean_of(const Pigment& p) {
   else if (!p.entries.empty())
     for (int i = 0; i < 64; ++i) colors.push_back(color_at(p.entries, (i + 0.5) / 64));
   if (colors.empty() && p.pattern.is_list) colors = default_colors(p.pattern);
-  if (colors.empty()) return {{0.5, 0.5, 0.5}, p.filter_all, p.transmit_all};
+  if (colors.empty())
+    return {{0.5, 0.5, 0.5}, p.filter_all, p.transmit_all + (p.pattern.has_alpha ? 0.5 : 0)};
   PovColor sum;
   for (const PovColor& c : colors)
     sum.rgb = sum.rgb + c.rgb, sum.filter += c.filter, sum.transmit += c.transmit;
@@ -426,7 +458,7 @@ PovColor mean_of(const Pigment& p) {
 bool is_transparent(const Pigment& p) {
   const auto passes = [](const PovColor& c) { return c.filter + c.transmit > 0; };
   if (is_solid(p)) return passes(p.solid);
-  if (p.pattern.once && p.pattern.key == "projected") return true;
+  if ((p.pattern.once || p.pattern.has_alpha) && p.pattern.key == "projected") return true;
   if (p.filter_all + p.transmit_all > 0 && p.pattern.key == "projected") return true;
   return std::ranges::any_of(p.entries, [&](const PigmentEntry& entry) {
     return entry.pigment != nullptr ? is_transparent(*entry.pigment) : passes(entry.color);

@@ -10,7 +10,7 @@
 #include "io/image/heights.h"
 #include "io/pov/translate/blobs.h"
 #include "io/pov/translate/functions.h"
-#include "io/pov/translate/height_functions.h"
+#include "io/pov/translate/height_meshes.h"
 #include "io/pov/translate/meshes.h"
 #include "io/pov/translate/patches.h"
 #include "io/pov/translate/polynomials.h"
@@ -552,6 +552,7 @@ class ShapeMaker {
     try {
       (palette ? read_palette_heights : read_heights)(path, kMaxHeightSide, kMaxHeightSamples);
     } catch (const Error& error) {
+      if (std::optional<Shapes> shapes = color_heights(path, smooth, water)) return shapes;
       return left_out(error.what());
     }
     if (gif)
@@ -597,12 +598,27 @@ class ShapeMaker {
       else
         break;
     }
-    std::shared_ptr<const TriangleMesh> heights =
-        height_mesh(context_, *function, {columns, rows, smooth, operand_, std::min(water, 1.0)});
-    if (heights == nullptr)
+    const std::optional<Heights> heights = heights_of_function(context_, *function, columns, rows);
+    if (!heights)
       return left_out("the function of a height field has no value somewhere, or takes too many steps");
+    return heights_as_mesh(*heights, smooth, water);
+  }
+
+  /// Nothing if the image is none in colour.
+  std::optional<Shapes> color_heights(const std::string& path, bool smooth, double water) {
+    try {
+      if (const std::optional<Heights> heights = heights_of_colors(path))
+        return heights_as_mesh(*heights, smooth, water);
+    } catch (const Error&) {
+      // Whoever read the image as a grey one says what is wrong with it.
+    }
+    return std::nullopt;
+  }
+
+  Shapes heights_as_mesh(const Heights& heights, bool smooth, double water) {
     Shapes shapes;
-    shapes.parts.push_back(mesh_shape(std::move(heights), nullptr));
+    shapes.parts.push_back(
+        mesh_shape(height_mesh(heights, {smooth, operand_, std::min(water, 1.0)}), nullptr));
     shapes.solid = operand_;
     if (operand_) add_water(shapes, water);
     return shapes;

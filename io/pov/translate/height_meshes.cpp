@@ -1,4 +1,4 @@
-#include "io/pov/translate/height_functions.h"
+#include "io/pov/translate/height_meshes.h"
 
 #include <algorithm>
 #include <array>
@@ -6,20 +6,23 @@
 #include <cstddef>
 
 #include "core/error.h"
+#include "io/image/library.h"
 #include "io/pov/evaluate.h"
 #include "io/pov/read_pov.h"
 
 namespace oktett::pov {
 namespace {
 
-/// Heights by rows of ascending z.
-struct Heights {
-  std::uint32_t columns, rows;
-  std::vector<double> y;
+/// Most places of a mesh.
+constexpr std::size_t kMostPlaces = std::size_t{2048} * 2048;
 
-  double at(std::uint32_t column, std::uint32_t row) const { return y[std::size_t{row} * columns + column]; }
+/// Where the heights stand.
+struct Field {
+  const Heights& heights;
+  std::uint32_t columns = heights.columns, rows = heights.rows;
+
   Vec3d place(std::uint32_t column, std::uint32_t row) const {
-    return {column / (columns - 1.0), at(column, row), row / (rows - 1.0)};
+    return {column / (columns - 1.0), heights.y[std::size_t{row} * columns + column], row / (rows - 1.0)};
   }
   /// From the heights to both sides.
   Vec3d normal(std::uint32_t column, std::uint32_t row) const {
@@ -31,6 +34,8 @@ struct Heights {
   }
 };
 
+double grey_of(double red, double green, double blue) { return 0.297 * red + 0.589 * green + 0.114 * blue; }
+
 /// The value at a place, as an image of 16 bits has it.
 std::optional<double> height_at(Context& context, const Function& function, double x, double y,
                                 std::uint64_t most_steps) {
@@ -39,7 +44,7 @@ std::optional<double> height_at(Context& context, const Function& function, doub
   if (function.components == 5 && last.block != nullptr && last.block->keyword == "pigment") {
     const auto color = context.queries->pigment(last.block, {x, y, 0});
     if (!color) return std::nullopt;
-    value = 0.297 * (*color)[0] + 0.589 * (*color)[1] + 0.114 * (*color)[2];
+    value = grey_of((*color)[0], (*color)[1], (*color)[2]);
   } else {
     const double place[] = {x, y, 0};
     value = evaluate(function, std::span(place).first(std::min<std::size_t>(3, function.parameters.size())),
@@ -63,7 +68,7 @@ void add_sides(MeshMaker& mesh, const std::vector<Vec3d>& edge, double bottom) {
   }
 }
 
-void close(MeshMaker& mesh, const Heights& h) {
+void close(MeshMaker& mesh, const Field& h) {
   constexpr double kBottom = -1e-4;
   std::vector<Vec3d> edge;
   for (std::uint32_t i = 0; i < h.columns; ++i) edge.push_back(h.place(i, 0));
@@ -94,7 +99,7 @@ void add_above(MeshMaker& mesh, const std::array<MeshCorner, 3>& triangle, doubl
 }
 
 /// All triangles, two to a cell.
-std::shared_ptr<const TriangleMesh> whole_field(const Heights& h, bool smooth) {
+std::shared_ptr<const TriangleMesh> whole_field(const Field& h, bool smooth) {
   auto mesh = std::make_shared<TriangleMesh>();
   for (std::uint32_t row = 0; row < h.rows; ++row)
     for (std::uint32_t column = 0; column < h.columns; ++column) {
@@ -110,10 +115,9 @@ std::shared_ptr<const TriangleMesh> whole_field(const Heights& h, bool smooth) {
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> height_mesh(Context& context, const Function& function,
-                                                const HeightForm& form) {
-  const auto [columns, rows, smooth, solid, water] = form;
-  if (context.queries == nullptr || function.nodes.empty()) return nullptr;
+std::optional<Heights> heights_of_function(Context& context, const Function& function, std::uint32_t columns,
+                                           std::uint32_t rows) {
+  if (context.queries == nullptr || function.nodes.empty()) return std::nullopt;
   Heights h{columns, rows, {}};
   h.y.reserve(std::size_t{columns} * rows);
   // A function that takes more in all is none here.
@@ -125,12 +129,37 @@ std::shared_ptr<const TriangleMesh> height_mesh(Context& context, const Function
         // The upper edge of the picture, where y is 0, lies at z = 1.
         const auto y =
             height_at(context, function, column / (columns - 1.0), 1 - row / (rows - 1.0), most_steps);
-        if (!y) return nullptr;
+        if (!y) return std::nullopt;
         h.y.push_back(*y);
       }
   } catch (const Error&) {
-    return nullptr;
+    return std::nullopt;
   }
+  return h;
+}
+
+std::optional<Heights> heights_of_colors(const std::string& file) {
+  const TexelImage image = image_library().read_texels({file, {}, TextureColors::linear});
+  if (image.colors != 3 || image.width < 2 || image.height < 2 ||
+      std::size_t{image.width} * image.height > kMostPlaces)
+    return std::nullopt;
+  Heights h{image.width, image.height, {}};
+  h.y.reserve(std::size_t{h.columns} * h.rows);
+  for (std::uint32_t row = h.rows; row-- > 0;)
+    for (std::uint32_t column = 0; column < h.columns; ++column) {
+      const std::size_t at = (std::size_t{row} * h.columns + column) * image.channels();
+      const auto& floats = image.floats;
+      const double word = image.bytes.empty() ? 65535 * grey_of(floats[at], floats[at + 1], floats[at + 2])
+                                              : 256.0 * image.bytes[at] + image.bytes[at + 1];
+      h.y.push_back(std::clamp(std::floor(word), 0.0, 65535.0) / 65535);
+    }
+  return h;
+}
+
+std::shared_ptr<const TriangleMesh> height_mesh(const Heights& heights, const HeightForm& form) {
+  const Field h{heights};
+  const auto [columns, rows] = std::pair(h.columns, h.rows);
+  const auto [smooth, solid, water] = form;
   if (!solid && !(water > 0)) return whole_field(h, smooth);
   const auto corner = [&, normals = smooth](std::uint32_t column, std::uint32_t row) {
     MeshCorner c{h.place(column, row)};
