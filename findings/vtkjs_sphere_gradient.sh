@@ -4,7 +4,7 @@
 # One would guess: evaluateGradient() of an implicit function is the gradient of evaluateFunction(), as in VTK: (6, 0, 0) at (3, 0, 0) for a
 # sphere about the origin, whose function is x*x + y*y + z*z - r*r. A cylinder about the axis (1, 1, 0) is the one about (2, 2, 0), since an
 # axis is a direction; VTK makes it 1 long.
-# What happens: vtk.js 37.4.3 subtracts the place from 2, and says (-1, 2, 2). Boxes, cones, planes and cylinders about x, y and z are right.
+# What happens: vtk.js 37.4.3 subtracts the place from 2, and says (-1, 2, 2). The gradient of a cone and of a cylinder about y is right.
 # A cylinder's axis is used at the length it has: at (3, 3, 0) on the axis (1, 1, 0), where -4 is right for a radius of 2, the function is -22,
 # and at (3, 3, 2) on the surface it is -18 for 0. About (0, 2, 0) it is -142 for 5 at a place outside: the radius grows with the distance.
 # Why a user of a ray tracer meets it: the gradient is the normal of an implicit surface, and tells a solver the way to it.

@@ -189,8 +189,8 @@ TEST_F(PovAtmosphere, ImagesThatAreNotRepeatedEnd) {
   const std::string ball = "sphere { 0, 1 pigment { image_map { ppm \"grey.ppm\" once } } }";
   EXPECT_EQ(warnings(ball), "");
   const std::string materials = section(ball, "materials");
-  EXPECT_NE(materials.find("filter: {function: {f: "), std::string::npos) << materials;
-  EXPECT_NE(materials.find("[1, [1, 1, 1]]"), std::string::npos) << materials;
+  EXPECT_NE(materials.find("opacity: {function: {f: "), std::string::npos) << materials;
+  EXPECT_NE(materials.find("map: [[0, 1], [1, 0]]"), std::string::npos) << materials;
 }
 
 // Whether the numbers of an image are decoded depends on the kind of the file, its gamma and the version.

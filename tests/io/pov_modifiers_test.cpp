@@ -222,6 +222,20 @@ void expect_measured(const std::vector<Measured>& cases) {
   }
 }
 
+// What passes by a pattern, without colour, is no level of max_trace_level either.
+TEST(PovModifiers, LightPassesManyPatterns) {
+  expect_measured({
+      {"background { rgb <.4, .6, .9> } #for (I, 1, 9) disc { 0, z, 1 pigment { planar color_map { [0 rgbt "
+       "<1, "
+       "0, 0, .9>] [1 rgbt <0, 0, 1, .8>] } } finish { ambient <.2, .1, .4> diffuse 0 } translate -I*z/9 } "
+       "#end",
+       {0.0536812f, 0.0805371f, 0.4671092f}},
+      {"background { rgb <.4, .6, .9> } #for (I, 1, 9) disc { 0, z, 1 pigment { checker rgbt <1, .5, 0, .9> "
+       "rgbt <0, 0, 1, .8> } finish { ambient .5 diffuse 0 } translate <.3, .3, -I/9> } #end",
+       {0.461265f, 0.3855955f, 0.3486839f}},
+  });
+}
+
 TEST(PovModifiers, LampsLightTheBack) {
   expect_measured({
       {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 pigment { rgb <1, .5, .25> } "

@@ -42,15 +42,9 @@ class MaterialWriter {
 
   /// `medium`: the name of what fills solids; empty: nothing does.
   Node write(const Look& look, const Interior& interior, const std::string& medium) {
-    if (const double seen_through = straight(look, interior, medium); seen_through > 0) {
-      Look opaque = look;
-      opaque.pigment.solid.transmit = 0;
-      const Node map = write(opaque, interior, medium);
-      tree_.put(map, "opacity", tree_.number(where_, 1 - seen_through));
-      return map;
-    }
     const Node map = tree_.map(where_);
-    const bool transparent = is_transparent(look);
+    passes_straight_ = passes_straight(look, interior, medium);
+    const bool transparent = is_transparent(look) && !passes_straight_;
     const bool is_solid_glass = transparent && look.is_plain() && is_solid(look.pigment);
     most_diffuse_ = 0;
     for_each_plain(look, [&](const Look& l) { most_diffuse_ = std::max(most_diffuse_, l.finish.diffuse); });
@@ -84,6 +78,7 @@ class MaterialWriter {
     if (transparent || any(look, [](const Finish& f) { return f.varies && f.fresnel; }))
       tree_.put(map, "ior", tree_.number(where_, ior));
     if (const Node bump = heights(look)) tree_.put(map, "map_bump", bump);
+    if (passes_straight_) tree_.put(map, "opacity", opacity(look));
     return map;
   }
 
@@ -94,16 +89,17 @@ class MaterialWriter {
   }
 
  private:
-  /// How much light passes a surface that neither bends nor colours it, so that it counts as no bounce; 0 of
-  /// what mirrors or shines, too, or has something inside.
-  static double straight(const Look& look, const Interior& interior, const std::string& medium) {
-    if (!look.is_plain() || !is_solid(look.pigment) || !medium.empty()) return 0;
-    const Finish& f = look.finish;
-    const bool is_dull =
-        f.irid <= 0 && f.phong <= 0 && f.specular <= 0 && !mirrors(f) && f.emission == Vec3d{0, 0, 0};
-    const PovColor& c = look.pigment.solid;
-    if (!is_dull || f.ior.value_or(interior.ior) != 1 || c.filter != 0) return 0;
-    return std::clamp(c.transmit, 0.0, 1.0);
+  /// Whether light passes a surface that neither bends nor colours it, so that it counts as no bounce. Not of
+  /// what mirrors or shines, too, as that does not get less by what passes, nor of layers.
+  static bool passes_straight(const Look& look, const Interior& interior, const std::string& medium) {
+    if (!medium.empty() || has_layers(look) || !is_transparent(look)) return false;
+    bool all = true;
+    for_each_plain(look, [&](const Look& plain) {
+      const Finish& f = plain.finish;
+      const bool is_dull = f.irid <= 0 && f.phong <= 0 && f.specular <= 0 && !mirrors(f);
+      all = all && is_dull && f.ior.value_or(interior.ior) == 1 && !filters(plain.pigment);
+    });
+    return all;
   }
 
   using PlainNode = std::function<Node(const Look&)>;
@@ -292,8 +288,15 @@ class MaterialWriter {
       });
     return of_shown_layer(look, [&](const Look& l) {
       const double all = of(l.finish);
-      if (!is_transparent(l.pigment)) return tree_.number(where_, all);
+      if (passes_straight_ || !is_transparent(l.pigment)) return tree_.number(where_, all);
       const auto left = [&](const PovColor& c) { return Vec3d{1, 1, 1} * (all * left_of(c)); };
+      return pigment_node(context_, where_, l.pigment, {left, true});
+    });
+  }
+
+  Node opacity(const Look& look) {
+    const auto left = [](const PovColor& c) { return Vec3d{1, 1, 1} * left_of(c); };
+    return of_shown_layer(look, [&](const Look& l) {
       return pigment_node(context_, where_, l.pigment, {left, true});
     });
   }
@@ -302,7 +305,9 @@ class MaterialWriter {
 
   Node glow(const Look& look) {
     const auto part = [this](const Finish& f) -> ColorPart {
-      return {[glow = glow_of(f)](const PovColor& c) { return glow * c.rgb * left_of(c); }};
+      return {[glow = glow_of(f), whole = passes_straight_](const PovColor& c) {
+        return glow * c.rgb * (whole ? 1 : left_of(c));
+      }};
     };
     return colors_by_finish(look, part, true);
   }
@@ -453,8 +458,9 @@ class MaterialWriter {
   Tree& tree_;
   Place where_;
   bool lit_behind_;
-  double most_diffuse_ = 0;     ///< of the look that is written
-  bool ambient_glows_ = false;  ///< its ambient light is that of each layer, as emission
+  double most_diffuse_ = 0;       ///< of the look that is written
+  bool passes_straight_ = false;  ///< it has `opacity` in place of `transparency`
+  bool ambient_glows_ = false;    ///< its ambient light is that of each layer, as emission
 };
 
 }  // namespace

@@ -455,14 +455,25 @@ PovColor mean_of(const Pigment& p) {
   return {sum.rgb / count, sum.filter / count, sum.transmit / count};
 }
 
-bool is_transparent(const Pigment& p) {
-  const auto passes = [](const PovColor& c) { return c.filter + c.transmit > 0; };
-  if (is_solid(p)) return passes(p.solid);
-  if ((p.pattern.once || p.pattern.has_alpha) && p.pattern.key == "projected") return true;
-  if (p.filter_all + p.transmit_all > 0 && p.pattern.key == "projected") return true;
+/// Whether `asked` holds of one of its colours; of images of what passes everywhere and somewhere.
+template <class Asked>
+static bool any_color(const Pigment& p, const Asked& asked) {
+  if (is_solid(p)) return asked(p.solid);
+  if (p.pattern.key == "projected") {
+    const bool is_clear_somewhere = p.pattern.once || p.pattern.has_alpha;
+    return asked({{}, p.filter_all, p.transmit_all}) || (is_clear_somewhere && asked({{}, 0, 1}));
+  }
   return std::ranges::any_of(p.entries, [&](const PigmentEntry& entry) {
-    return entry.pigment != nullptr ? is_transparent(*entry.pigment) : passes(entry.color);
+    return entry.pigment != nullptr ? any_color(*entry.pigment, asked) : asked(entry.color);
   });
+}
+
+bool is_transparent(const Pigment& p) {
+  return any_color(p, [](const PovColor& c) { return c.filter + c.transmit > 0; });
+}
+
+bool filters(const Pigment& p) {
+  return any_color(p, [](const PovColor& c) { return c.filter != 0; });
 }
 
 Node pigment_node(Context& context, const Place& where, const Pigment& p, const ColorPart& part) {

@@ -69,6 +69,8 @@ std::vector<PigmentEntry> entries_of(const Pigment& pigment);
 PovColor mean_of(const Pigment& pigment);
 /// Whether light passes anywhere.
 bool is_transparent(const Pigment& pigment);
+/// Whether what passes is coloured anywhere.
+bool filters(const Pigment& pigment);
 /// Whether it has one colour.
 bool is_solid(const Pigment& pigment);
 
