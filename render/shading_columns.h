@@ -52,6 +52,8 @@ struct alignas(64) ShadingMaterial {
 
   /// Whether it sends rays on.
   bool sends_rays() const { return reflection != 0 || transparency != 0; }
+  /// Whether light that passes goes on as it came.
+  bool passes_unbent() const { return transparency != 0 && ior == 1; }
   /// Whether its surfaces show no light but that of the rays that they send on.
   bool only_sends_rays() const { return !varies && diffuse == 0 && specular == 0 && unlit == Color{0, 0, 0}; }
 };

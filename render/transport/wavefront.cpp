@@ -570,16 +570,16 @@ void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const S
 void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const Vec3f& origin,
                  const Vec3f& direction, const Color& throughput, Bounce bounce) {
   const std::uint32_t sample = wavefront.rays.sample[ray];
-  const bool straight = bounce == Bounce::straight;
+  const bool straight = bounce == Bounce::straight, counts = !straight && bounce != Bounce::unbent;
   RayQueue::Entry entry;
   entry.ray.origin = origin, entry.ray.direction = direction;
   entry.sample = sample;
   entry.throughput = throughput;
   entry.distance = wavefront.rays.distance[ray] + wavefront.hits.t[ray];
-  entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
+  entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (counts ? 1 : 0));
   entry.from_camera = straight && wavefront.rays.from_camera[ray];
   if (bounce == Bounce::reflected) entry.kind = RayKind::glossy;
-  if (bounce == Bounce::refracted) entry.kind = RayKind::transmission;
+  if (bounce == Bounce::refracted || bounce == Bounce::unbent) entry.kind = RayKind::transmission;
   if (straight && wavefront.level > 0) entry.kind = wavefront.rays.kind[ray];
   entry.insides = wavefront.rays.insides[ray];
   queue.push_back(entry);

@@ -176,6 +176,7 @@ enum class Bounce {
   reflected,
   refracted,
   straight,  ///< through a hole: not counted as a bounce
+  unbent,    ///< through what does not bend it: not counted either
 };
 
 /// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`.

@@ -178,31 +178,42 @@ void queue_bounces(const RenderContext& context, Wavefront& wavefront, const Int
   }
 }
 
+/// Bit k: what passes hit k goes on as it came, and counts as no bounce.
+std::uint64_t unbent_hits(const ShadingColumns& c) {
+  std::uint64_t all = 0;
+  for (std::size_t k = 0; k < c.count && c.sending != 0; ++k)
+    all |= std::uint64_t{c.transparency[k] != 0 && c.eta[k] == 1} << k;
+  return all & c.sending;
+}
+
 /// Queues the rays that leave holes, mirrors and glass one by one, as those of a sample follow the order of
-/// its hits. `straight`: the light that passes holes.
+/// its hits. `straight`: the light that passes holes; null if there are none. `unbent`: see unbent_hits.
 void queue_in_order(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
-                    const ShadingColumns& c, const Color* straight, const BounceColumns& mirrored,
-                    const BounceColumns& refracted) {
+                    const ShadingColumns& c, const Color* straight, std::uint64_t unbent,
+                    const BounceColumns& mirrored, const BounceColumns& refracted) {
   for (std::size_t k = 0; k < c.count; ++k) {
     const std::uint32_t i = c.ray[k];
-    if (max_component(straight[k]) >= c.cutoff && admit(wavefront, i)) {
+    if (straight != nullptr && max_component(straight[k]) >= c.cutoff && admit(wavefront, i)) {
       const Vec3f direction = InteractionBlock::get(c.direction, k);
       push_bounce(wavefront, wavefront.next, i, offset_origin(found[k], direction), direction, straight[k],
                   Bounce::straight);
       if (context.tracks_insides)
         wavefront.next.insides.back() = insides_behind(context, wavefront, i, found, k);
     }
-    if (wavefront.rays.bounces[i] >= context.settings.depth) continue;
+    const bool deep = wavefront.rays.bounces[i] >= context.settings.depth, is_unbent = (unbent >> k & 1) != 0;
     const auto push = [&](const BounceColumns& sent, RayQueue& queue, Bounce bounce) {
       if ((sent.sent >> k & 1) == 0 || !admit(wavefront, i)) return;
       push_bounce(wavefront, queue, i, InteractionBlock::get(sent.origin, k),
                   InteractionBlock::get(sent.direction, k), InteractionBlock::get(sent.throughput, k),
                   bounce);
-      if (context.tracks_insides && bounce == Bounce::refracted)
+      if (context.tracks_insides && bounce != Bounce::reflected)
         queue.insides.back() = insides_behind(context, wavefront, i, found, k);
     };
-    push(mirrored, wavefront.next, Bounce::reflected);
-    push(refracted, wavefront.refracted, Bounce::refracted);
+    if (!deep) push(mirrored, wavefront.next, Bounce::reflected);
+    if (is_unbent)
+      push(refracted, wavefront.refracted, Bounce::unbent);
+    else if (!deep)
+      push(refracted, wavefront.refracted, Bounce::refracted);
   }
 }
 
@@ -210,10 +221,12 @@ void queue_in_order(const RenderContext& context, Wavefront& wavefront, const In
 void push_bounces(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
                   const ShadingColumns& c, const Color* straight) {
   const auto deep = [&](std::uint32_t ray) { return wavefront.rays.bounces[ray] >= context.settings.depth; };
-  const bool sends = c.sending != 0 && !std::all_of(c.ray, c.ray + c.count, deep);
+  const std::uint64_t unbent = unbent_hits(c);
+  const bool sends = unbent != 0 || (c.sending != 0 && !std::all_of(c.ray, c.ray + c.count, deep));
   BounceColumns mirrored, refracted;
   if (sends) render_code(context.isa).bounce_rays(found, c, mirrored, refracted);
-  if (straight != nullptr) return queue_in_order(context, wavefront, found, c, straight, mirrored, refracted);
+  if (straight != nullptr || unbent != 0)
+    return queue_in_order(context, wavefront, found, c, straight, unbent, mirrored, refracted);
   if (!sends) return;
   limit_bounces(context, wavefront, c, mirrored, refracted);
   queue_bounces(context, wavefront, found, c, mirrored, RayKind::glossy, wavefront.next);
@@ -305,7 +318,8 @@ void drop_dark_hits(const RenderContext& context, Wavefront& wavefront) {
     if (user >= world.objects.size()) return false;
     // An object without a material of its own has one for each slot of its mesh.
     const std::uint32_t material = world.objects[user].material;
-    return material < context.materials.size() && context.materials[material].only_sends_rays();
+    return material < context.materials.size() && context.materials[material].only_sends_rays() &&
+           !context.materials[material].passes_unbent();
   };
   std::size_t left = 0;
   for (std::size_t i = 0; i < wavefront.hit_rays.size(); ++i) {

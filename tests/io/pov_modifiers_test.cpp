@@ -222,9 +222,15 @@ void expect_measured(const std::vector<Measured>& cases) {
   }
 }
 
-// What passes by a pattern, without colour, is no level of max_trace_level either.
-TEST(PovModifiers, LightPassesManyPatterns) {
+// What passes unbent is no level of max_trace_level, by a pattern, with a colour and beside a mirror, too.
+TEST(PovModifiers, LightPassesManySurfaces) {
   expect_measured({
+      {"background { rgb <.4, .6, .9> } #for (I, 1, 9) disc { 0, z, 1 pigment { rgbf <1, .9, .8, .9> } "
+       "finish { ambient .3 diffuse 0 } translate -I*z/9 } #end",
+       {0.338735f, 0.2108339f, 0.1280537f}},
+      {"background { rgb <.4, .6, .9> } #for (I, 1, 9) disc { 0, z, 1 pigment { rgbt <.2, .5, 1, .8> } "
+       "finish { ambient .3 diffuse 0 reflection .1 } translate -I*z/9 } #end",
+       {0.2239719f, 0.3982605f, 0.6752728f}},
       {"background { rgb <.4, .6, .9> } #for (I, 1, 9) disc { 0, z, 1 pigment { planar color_map { [0 rgbt "
        "<1, "
        "0, 0, .9>] [1 rgbt <0, 0, 1, .8>] } } finish { ambient <.2, .1, .4> diffuse 0 } translate -I*z/9 } "
