@@ -242,6 +242,12 @@ TEST(PovModifiers, LightPassesManySurfaces) {
   });
 }
 
+TEST(PovModifiers, SetsOfMandelbrotAreGreyWithAnExponent) {
+  const std::string set = "disc { 0, z, 1 finish { ambient 1 diffuse 0 } pigment { mandel 50 ";
+  expect_measured({{(set + "translate <-.3, -.2, 0> } }").c_str(), {0, 1, 1}},
+                   {(set + "exponent 3 translate <-.3, -.2, 0> } }").c_str(), {1, 1, 1}}});
+}
+
 TEST(PovModifiers, LampsLightTheBack) {
   expect_measured({
       {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 pigment { rgb <1, .5, .25> } "

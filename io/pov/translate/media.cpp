@@ -96,7 +96,10 @@ void read_interior(Context& context, const Block& block, Interior& interior) {
       const std::string word(a.peek_word());
       a.take();
       const bool changes = a.is_numbers() && a.vector("a number").x != 0;
-      if (changes && word != "caustics" && word != "dispersion_samples")
+      if (changes && word == "caustics")
+        context.tell("interior caustics", where,
+                     "'caustics' of an interior, brighter shadows of glass, are left out");
+      else if (changes && word != "dispersion_samples")
         context.tell("interior " + word, where, fmt::format("'{}' of an interior has no meaning here", word));
     }
   }

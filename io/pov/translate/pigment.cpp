@@ -45,7 +45,8 @@ PigmentEntry entry_at(double at, PigmentEntry before, const PigmentEntry& after)
 }
 
 /// The colours of a pattern without a map: greys, but for some. As seen in 3.7.0.10.
-std::vector<PigmentEntry> default_map(std::string_view pattern) {
+std::vector<PigmentEntry> default_map(const PovPattern& p) {
+  const std::string_view pattern = p.word;
   struct Stop {
     double at;
     Vec3d color;
@@ -62,7 +63,8 @@ std::vector<PigmentEntry> default_map(std::string_view pattern) {
   if (pattern == "marble") stops = {{0, {0.9, 0.8, 0.8}}, {0.9, {0.9, 0.08, 0.08}}, {0.9, black}, {1, black}};
   if (pattern == "wood") stops = {{0, light}, {0.6, light}, {0.6, dark}, {1, dark}};
   if (pattern == "radial") stops = {{0, cyan}, {0.333, yellow}, {0.666, magenta}, {1, cyan}};
-  if (pattern == "mandel")
+  // With an exponent it is grey.
+  if (pattern == "mandel" && !has_key(*p.own, "power"))
     stops = {{0, black},       {0.001, black}, {0.001, cyan}, {0.012, yellow},
              {0.015, magenta}, {0.1, cyan},    {1, cyan}};
   std::vector<PigmentEntry> map;
@@ -426,7 +428,7 @@ Node only_value(const std::vector<Node>& values) {
 }
 
 std::vector<PigmentEntry> entries_of(const Pigment& p) {
-  if (!p.pattern.is_list) return p.entries.empty() ? default_map(p.pattern.word) : p.entries;
+  if (!p.pattern.is_list) return p.entries.empty() ? default_map(p.pattern) : p.entries;
   std::vector<PigmentEntry> list = p.entries;
   const std::vector<PovColor> usual = default_colors(p.pattern);
   list.resize(std::min(list.size(), usual.size()));
