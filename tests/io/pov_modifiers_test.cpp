@@ -248,6 +248,25 @@ TEST(PovModifiers, SetsOfMandelbrotAreGreyWithAnExponent) {
                    {(set + "exponent 3 translate <-.3, -.2, 0> } }").c_str(), {1, 1, 1}}});
 }
 
+// What is subtracted ends where its faces coincide with others, as seen in POV-Ray.
+TEST(PovModifiers, FacesThatCoincideLeaveSkins) {
+  const std::string look = " pigment { rgb <1, .6, .3> } }";
+  expect_same({
+      {("difference { box { -1, 1 } box { <-.5, 0, -.5>, <.5, 1, .5> }" + look).c_str(),
+       ("box { -1, 1" + look).c_str()},
+      {("difference { cylinder { -y, y, 1.5 } cylinder { -y, y, 1 }" + look).c_str(),
+       ("cylinder { -y, y, 1.5" + look).c_str()},
+      {("difference { union { box { -1, 1 } box { 0, <2, 1.5, 1> } } "
+        "object { box { <-1, 0, -1>, 1 } scale <.5, 1, .5> } rotate 20*y" +
+        look)
+           .c_str(),
+       ("union { box { -1, 1 } box { 0, <2, 1.5, 1> } rotate 20*y" + look).c_str()},
+  });
+  // Those that do not are open.
+  EXPECT_NE(picture_of("difference { box { -1, 1 } box { <-.5, 0, -.5>, <.5, 1.001, .5> }" + look),
+            picture_of("box { -1, 1" + look));
+}
+
 TEST(PovModifiers, LampsLightTheBack) {
   expect_measured({
       {"light_source { <3, 2, 9> rgb 1 } disc { 0, <.3, .2, -1>, 1 pigment { rgb <1, .5, .25> } "

@@ -71,6 +71,17 @@ Extent around(const Vec3d& center, double radius) {
   return {center - r, center + r};
 }
 
+/// Around a disc across an axis.
+Extent disc_around(const Vec3d& center, const Vec3d& axis, double radius) {
+  const double whole = dot(axis, axis);
+  Vec3d r;
+  // Along an axis of space it is flat to the last bit.
+  for (int k = 0; k < 3; ++k)
+    r[k] = whole > 0 ? std::abs(radius) * std::sqrt(std::max(1 - axis[k] * axis[k] / whole, 0.0))
+                     : std::abs(radius);
+  return {center - r, center + r};
+}
+
 /// What the shape itself says, with its arguments taken.
 Extent shape_extent(Context& context, Arguments& a) {
   const std::string_view kind = a.block().keyword;
@@ -88,7 +99,7 @@ Extent shape_extent(Context& context, Arguments& a) {
     const double r = kind == "cone" ? a.number("a radius") : 0;
     const Vec3d q = a.vector("a point");
     const double s = a.number("a radius");
-    return around(p, kind == "cone" ? r : s).join(around(q, s));
+    return disc_around(p, q - p, kind == "cone" ? r : s).join(disc_around(q, q - p, s));
   }
   if (kind == "torus") {
     const double major = a.number("a radius"), minor = a.number("a radius"), r = major + minor;

@@ -462,6 +462,54 @@ std::vector<ObjectWriter::Built> ObjectWriter::build_all(
   return built;
 }
 
+/// The boxes around those shapes of a solid that have flat faces, in the space that it stands in. Not of more
+/// blocks than can be a matter of faces: objects of objects can double at each declaration.
+static std::vector<Extent> flat_shapes(Context& context, const Block& block, int& most_blocks) {
+  constexpr std::array<std::string_view, 3> kFlat{"box", "cylinder", "cone"};
+  if (--most_blocks < 0) return {};
+  if (std::ranges::find(kFlat, block.keyword) != kFlat.end()) {
+    const Extent extent = extent_of(context, block);
+    return extent.is_finite() && !has_word(block, "open") ? std::vector{extent} : std::vector<Extent>{};
+  }
+  std::vector<Extent> all;
+  for (const std::shared_ptr<const Block>& inner : objects_in(block))
+    std::ranges::copy(flat_shapes(context, *inner, most_blocks), std::back_inserter(all));
+  if (all.empty()) return all;
+  const Affine map = moves_in(context, block).all;
+  for (Extent& extent : all) extent = extent.moved(map);
+  return all;
+}
+static std::vector<Extent> flat_shapes(Context& context, const Block& block) {
+  int most_blocks = 256;
+  return flat_shapes(context, block, most_blocks);
+}
+
+/// In POV-Ray faces of a difference that coincide leave a skin, as what is subtracted ends where they lie.
+/// The transform that makes what is subtracted as much smaller as a skin is seen; empty if it has no face in
+/// that of one of the `shapes`.
+static Moves room_for_skins(const std::vector<Extent>& shapes, const Extent& subtracted, const Place& where) {
+  constexpr double kSkin = 4e-6, kSame = 1e-9;
+  Moves moves;
+  if (!subtracted.is_finite()) return moves;
+  Vec3d scale{1, 1, 1}, shift{0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    double low = subtracted.lo[k], high = subtracted.hi[k];
+    for (const Extent& shape : shapes) {
+      const double size = std::max(
+          {max_component(abs(shape.lo)), max_component(abs(shape.hi)), max_component(shape.hi - shape.lo)});
+      if (std::abs(subtracted.lo[k] - shape.lo[k]) <= kSame * size) low = subtracted.lo[k] + kSkin * size;
+      if (std::abs(subtracted.hi[k] - shape.hi[k]) <= kSame * size) high = subtracted.hi[k] - kSkin * size;
+    }
+    const double width = subtracted.hi[k] - subtracted.lo[k];
+    if (high - low >= width || !(high > low)) continue;
+    scale[k] = (high - low) / width, shift[k] = low - scale[k] * subtracted.lo[k];
+  }
+  if (scale == Vec3d{1, 1, 1}) return moves;
+  moves.add({Move::Kind::scale, scale, {}, where});
+  moves.add({Move::Kind::translate, shift, {}, where});
+  return moves;
+}
+
 ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
                                                  const std::vector<std::shared_ptr<const Block>>& children,
                                                  const Modifiers& m, const Outer& outer) {
@@ -482,6 +530,7 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
   const bool lost = (k == "intersection" || k == "object") &&
                     std::ranges::any_of(parts, [](const Built& b) { return !b.node; });
   if (lost || parts.empty() || (k == "difference" && !parts[0].node)) return std::nullopt;
+  if (k == "difference") leave_skins(children, parts);
   std::erase_if(parts, [](const Built& b) { return !b.node; });
   if (parts.empty()) return std::nullopt;
   if (k == "object") {
@@ -500,6 +549,20 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
   for (const Built& part : parts) nodes.push_back(part.node), solid &= part.solid;
   return finish(block, m, outer,
                 {nodes.size() == 1 ? nodes[0] : list_node(block.where, "group", nodes), solid, false}, false);
+}
+
+void ObjectWriter::leave_skins(const std::vector<std::shared_ptr<const Block>>& children,
+                               std::vector<Built>& parts) {
+  const std::vector<Extent> shapes = flat_shapes(context_, *children[0]);
+  if (shapes.empty()) return;
+  std::size_t at = 0;
+  for (const auto& child : children) {
+    if (child->keyword == "light_source") continue;
+    const Built& part = parts[at++];
+    if (at == 1 || !part.node || part.negative || part.surfaces) continue;
+    if (!flat_shapes(context_, *child).empty())
+      add_moves(part.node, room_for_skins(shapes, extent_of(context_, *child), child->where), child->where);
+  }
 }
 
 ObjectWriter::Maybe ObjectWriter::build_light_group(const Block& block,
