@@ -484,30 +484,28 @@ static std::vector<Extent> flat_shapes(Context& context, const Block& block) {
   return flat_shapes(context, block, most_blocks);
 }
 
-/// In POV-Ray faces of a difference that coincide leave a skin, as what is subtracted ends where they lie.
-/// The transform that makes what is subtracted as much smaller as a skin is seen; empty if it has no face in
-/// that of one of the `shapes`.
-static Moves room_for_skins(const std::vector<Extent>& shapes, const Extent& subtracted, const Place& where) {
-  constexpr double kSkin = 4e-6, kSame = 1e-9;
-  Moves moves;
-  if (!subtracted.is_finite()) return moves;
-  Vec3d scale{1, 1, 1}, shift{0, 0, 0};
-  for (int k = 0; k < 3; ++k) {
-    double low = subtracted.lo[k], high = subtracted.hi[k];
-    for (const Extent& shape : shapes) {
-      const double size = std::max(
-          {max_component(abs(shape.lo)), max_component(abs(shape.hi)), max_component(shape.hi - shape.lo)});
-      if (std::abs(subtracted.lo[k] - shape.lo[k]) <= kSame * size) low = subtracted.lo[k] + kSkin * size;
-      if (std::abs(subtracted.hi[k] - shape.hi[k]) <= kSame * size) high = subtracted.hi[k] - kSkin * size;
+/// How far the sides of a box are moved outwards.
+struct Growth {
+  Vec3d lo{0, 0, 0}, hi{0, 0, 0};
+
+  /// The transform that moves them; empty if none is.
+  Moves moves(const Extent& box, const Place& where) const {
+    Moves moves;
+    Vec3d scale{1, 1, 1}, shift{0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      const double width = box.hi[k] - box.lo[k];
+      if ((lo[k] == 0 && hi[k] == 0) || !(width > -lo[k] - hi[k])) continue;
+      scale[k] = 1 + (lo[k] + hi[k]) / width, shift[k] = box.lo[k] - lo[k] - scale[k] * box.lo[k];
     }
-    const double width = subtracted.hi[k] - subtracted.lo[k];
-    if (high - low >= width || !(high > low)) continue;
-    scale[k] = (high - low) / width, shift[k] = low - scale[k] * subtracted.lo[k];
+    if (scale == Vec3d{1, 1, 1}) return moves;
+    moves.add({Move::Kind::scale, scale, {}, where});
+    moves.add({Move::Kind::translate, shift, {}, where});
+    return moves;
   }
-  if (scale == Vec3d{1, 1, 1}) return moves;
-  moves.add({Move::Kind::scale, scale, {}, where});
-  moves.add({Move::Kind::translate, shift, {}, where});
-  return moves;
+};
+
+static double size_of(const Extent& box) {
+  return std::max({max_component(abs(box.lo)), max_component(abs(box.hi)), max_component(box.hi - box.lo)});
 }
 
 ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
@@ -554,15 +552,35 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
 void ObjectWriter::leave_skins(const std::vector<std::shared_ptr<const Block>>& children,
                                std::vector<Built>& parts) {
   const std::vector<Extent> shapes = flat_shapes(context_, *children[0]);
-  if (shapes.empty()) return;
+  const Extent whole = extent_of(context_, *children[0]);
+  if (shapes.empty() || !whole.is_finite()) return;
+  constexpr double kSame = 1e-9;
+  const double size = size_of(whole), skin = 4e-6 * size;
+  const auto same = [&](double a, double b) { return std::abs(a - b) <= kSame * size; };
+  Growth first;
   std::size_t at = 0;
   for (const auto& child : children) {
     if (child->keyword == "light_source") continue;
     const Built& part = parts[at++];
     if (at == 1 || !part.node || part.negative || part.surfaces) continue;
-    if (!flat_shapes(context_, *child).empty())
-      add_moves(part.node, room_for_skins(shapes, extent_of(context_, *child), child->where), child->where);
+    const Extent box = extent_of(context_, *child);
+    if (!box.is_finite() || flat_shapes(context_, *child).empty()) continue;
+    // Where it is the outermost face, the skin lies outside, so that what is subtracted ends at its place.
+    Growth own;
+    for (int k = 0; k < 3; ++k) {
+      const auto any = [&](auto&& meets) { return std::ranges::any_of(shapes, meets); };
+      if (same(box.lo[k], whole.lo[k]))
+        first.lo[k] = skin;
+      else if (any([&](const Extent& shape) { return same(box.lo[k], shape.lo[k]); }))
+        own.lo[k] = -skin;
+      if (same(box.hi[k], whole.hi[k]))
+        first.hi[k] = skin;
+      else if (any([&](const Extent& shape) { return same(box.hi[k], shape.hi[k]); }))
+        own.hi[k] = -skin;
+    }
+    add_moves(part.node, own.moves(box, child->where), child->where);
   }
+  add_moves(parts[0].node, first.moves(whole, children[0]->where), children[0]->where);
 }
 
 ObjectWriter::Maybe ObjectWriter::build_light_group(const Block& block,

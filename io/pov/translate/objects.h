@@ -65,7 +65,8 @@ class ObjectWriter {
   Maybe build_shape(const Block& block, const Outer& outer, Arguments& arguments);
   Maybe build_children(const Block& block, const std::vector<std::shared_ptr<const Block>>& children,
                        const Modifiers& m, const Outer& outer);
-  /// Makes what a difference subtracts smaller where its faces coincide with those of the first child.
+  /// In POV-Ray faces of a difference that coincide leave a skin, as what is subtracted ends where they lie.
+  /// Moves such faces apart as far as skins are seen.
   void leave_skins(const std::vector<std::shared_ptr<const Block>>& children, std::vector<Built>& parts);
   /// A union whose lights light nothing else.
   Maybe build_light_group(const Block& block, const std::vector<std::shared_ptr<const Block>>& children,
