@@ -17,6 +17,7 @@ struct Event {
   std::uint32_t crossing;
   bool shown =
       false;  ///< of a surface: it is seen as the states are before those that coincide with it count
+  bool decisive = false;  ///< see mark_decisive
 };
 
 /// Which solids, operands and nodes the ray is inside of. end() resets only what was changed, so that a large
@@ -159,18 +160,43 @@ bool is_seen(const CsgItem& csg, std::uint32_t geometry, bool with_unseen) {
   return with_unseen || csg.unseen.empty() || csg.unseen[geometry] == 0;
 }
 
+/// Marks those of the events from `first` to `end` that turn as told and decide whether the ray is inside of
+/// the combination: alone they would, or all others would not. `states` are those behind all. Returns whether
+/// there are any.
+bool mark_decisive(States& states, std::vector<Event>& events, std::size_t first, std::size_t end,
+                   float turn) {
+  const auto add = [&](const Event& e, int times) {
+    if (e.turn != 0) states.add(e.solid, e.geometry, e.turn < 0 ? times : -times);
+  };
+  const auto turns = [&](const Event& e, int times) {
+    const bool before = states.whole();
+    add(e, times);
+    const bool changed = states.whole() != before;
+    add(e, -times);
+    return e.turn == turn && changed;
+  };
+  bool any = false;
+  for (std::size_t k = first; k < end; ++k) any |= events[k].decisive = turns(events[k], -1);
+  for (std::size_t k = first; k < end; ++k) add(events[k], -1);
+  for (std::size_t k = first; k < end; ++k) any |= events[k].decisive |= turns(events[k], 1);
+  for (std::size_t k = first; k < end; ++k) add(events[k], 1);
+  return any;
+}
+
 /// Which of the events from `first` to `end` is the hit where the ray enters (-1) or leaves (1) the
-/// combination: one with a solid that is entered or left likewise, if there is one, as its normal is right;
-/// `end` if only what has no surface is.
-std::size_t seen_event(const CsgItem& csg, const std::vector<Event>& events, std::size_t first,
+/// combination: one with a solid that is entered or left likewise, if there is one, as its normal is right,
+/// and of several one that decides; `end` if only what has no surface is.
+std::size_t seen_event(const CsgItem& csg, States& states, std::vector<Event>& events, std::size_t first,
                        std::size_t end, float turn, bool with_unseen) {
-  bool likewise = false;
-  for (std::size_t k = first; k < end; ++k) {
-    if (events[k].turn != turn) continue;
-    likewise = true;
-    if (is_seen(csg, events[k].geometry, with_unseen)) return k;
-  }
-  if (likewise) return end;
+  const auto likewise = std::count_if(events.begin() + static_cast<std::ptrdiff_t>(first),
+                                      events.begin() + static_cast<std::ptrdiff_t>(end),
+                                      [&](const Event& e) { return e.turn == turn; });
+  const bool some_decide = likewise > 1 && mark_decisive(states, events, first, end, turn);
+  for (std::size_t k = first; k < end; ++k)
+    if (events[k].turn == turn && (!some_decide || events[k].decisive) &&
+        is_seen(csg, events[k].geometry, with_unseen))
+      return k;
+  if (likewise > 0) return end;
   for (std::size_t k = first; k < end && events[k].t == events[first].t; ++k)
     if (events[k].turn != 0 && is_seen(csg, events[k].geometry, with_unseen)) return k;
   return end;
@@ -226,7 +252,8 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
         s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
     const bool now = s.states.whole();
     const float turn = now ? -1.0f : 1.0f;
-    const std::size_t seen = now == inside ? end : seen_event(csg, s.events, first, end, turn, with_unseen);
+    const std::size_t seen =
+        now == inside ? end : seen_event(csg, s.states, s.events, first, end, turn, with_unseen);
     inside = now;
     if (!csg.has_surfaces) {
       goes_on = seen == end || report(seen, turn);

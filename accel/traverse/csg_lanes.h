@@ -2,6 +2,8 @@
 /// \file Several rays at once against a combination of primitives: their crossings are gathered in lanes and
 /// swept in lanes. The hits have the same bits as those of accel/csg/csg_sweep.cpp.
 
+#include <algorithm>
+
 #include "accel/csg/csg.h"
 #include "accel/exact_table.h"
 #include "accel/ray_state.h"
@@ -97,15 +99,15 @@ class CsgLanes {
     const F last = min(rays_.tmax, biggest);
     F limit(-1.0f), next = inf;
     for (int row = 0; row < rows_.rows; ++row) next = min(F::load(rows_.t[row]), next);
-    unsigned inside = evaluate(steps);
+    unsigned inside = evaluate(steps, inside_);
     for (unsigned active = lanes_;;) {
       active &= bits(next <= last);
       if (active == 0) return true;
       const F end = min(next + (next * F(0x1p-21f) + slack), biggest);
       const F after = advance(limit, end);
-      const unsigned now = evaluate(steps);
+      const unsigned now = evaluate(steps, inside_);
       const unsigned turned = (now ^ inside) & active;
-      if (turned != 0) active &= ~resolve(limit, end, next, turned, now, found);
+      if (turned != 0) active &= ~resolve(steps, limit, end, next, turned, now, found);
       inside = now, limit = end, next = after;
     }
   }
@@ -260,25 +262,64 @@ class CsgLanes {
     return after;
   }
 
-  /// The rays that are inside the combination.
-  OKTETT_INLINE unsigned evaluate(const std::vector<CsgStep>& steps) const {
+  /// The rays that are inside the combination, if those in `inside` are inside of each solid.
+  OKTETT_INLINE unsigned evaluate(const std::vector<CsgStep>& steps, const unsigned* inside) const {
     unsigned possible = lanes_;
-    for (int i = 0; i < needed_count_; ++i) possible &= inside_[needed_[i]];
+    for (int i = 0; i < needed_count_; ++i) possible &= inside[needed_[i]];
     if (possible == 0) return 0;
     const auto count = static_cast<std::uint32_t>(steps.size());
     std::uint32_t state[kMaxPlaces];
     const CsgStep* step = steps.data();
     for (std::uint32_t i = 0; i < count; ++i) state[i] = step[i].initial;
-    for (int s = 0; s < solids_; ++s) state[operand_[s]] |= inside_[s];
+    for (int s = 0; s < solids_; ++s) state[operand_[s]] |= inside[s];
     for (std::uint32_t i = count; i-- > 1;) state[step[i].parent] &= state[i] ^ step[i].flip;
     return (state[0] ^ step[0].flip) & possible;
+  }
+
+  /// Which of the crossings decide where the rays in `several` turn, see mark_decisive in csg_sweep.cpp.
+  struct Decisive {
+    unsigned rays[CrossingLanes<N>::kMost];  ///< per row
+    unsigned any = 0;
+  };
+  template <class Meant>
+  OKTETT_NOINLINE void mark_decisive(const std::vector<CsgStep>& steps, const F& limit, const F& end,
+                                     unsigned several, unsigned now, Meant&& meant,
+                                     Decisive& decisive) const {
+    unsigned states[CrossingLanes<N>::kMost], before[CrossingLanes<N>::kMost];
+    alignas(64) float depth_before[CrossingLanes<N>::kMost][N];
+    int row = 0;
+    for (int s = 0; s < solids_; ++s) {
+      F depth = F::load(depth_[s]);
+      for (; row < end_[s]; ++row) {
+        const F t = F::load(rows_.t[row]);
+        depth = select((t > limit) & (t <= end), depth + F::load(rows_.turn[row]), depth);
+      }
+      depth.store(depth_before[s]);
+      before[s] = bits(depth > F(0.0f));
+    }
+    const unsigned then = evaluate(steps, before);
+    row = 0;
+    for (int s = 0; s < solids_; ++s)
+      for (; row < end_[s]; ++row) {
+        decisive.rays[row] = 0;
+        const unsigned here = bits(meant(row, F::load(rows_.t[row]))) & several;
+        if (here == 0) continue;
+        const F turn = F::load(rows_.turn[row]);
+        std::copy_n(inside_, solids_, states);
+        states[s] = bits(F::load(depth_[s]) + turn > F(0.0f));
+        const unsigned without = evaluate(steps, states) ^ now;
+        std::copy_n(before, solids_, states);
+        states[s] = bits(F::load(depth_before[s]) - turn > F(0.0f));
+        decisive.rays[row] = here & (without | (evaluate(steps, states) ^ then));
+        decisive.any |= decisive.rays[row];
+      }
   }
 
   /// Chooses the hits of the rays in `turned` among the crossings in (limit, end], the first of which is at
   /// `next`; see CsgSweep. `now`: the rays that enter the combination. Returns those that have a hit: others
   /// pass what has no surface.
-  OKTETT_NOINLINE unsigned resolve(const F& limit, const F& end, const F& next, unsigned turned, unsigned now,
-                                   Found& found) const {
+  OKTETT_NOINLINE unsigned resolve(const std::vector<CsgStep>& steps, const F& limit, const F& end,
+                                   const F& next, unsigned turned, unsigned now, Found& found) const {
     const F inf(std::numeric_limits<float>::infinity());
     const F want = select(F::M::from_bits(now), F(-1.0f), F(1.0f));
     const auto meant = [&](int row, const F& t) {
@@ -287,20 +328,32 @@ class CsgLanes {
     const auto is_seen = [&](int row) {
       return csg_.unseen.empty() || csg_.unseen[csg_.solids->geometry_of(rows_.item[row])] == 0;
     };
+    unsigned one = 0, several = 0;
+    for (int row = 0; row < rows_.rows; ++row) {
+      const unsigned likewise = bits(meant(row, F::load(rows_.t[row]))) & turned;
+      several |= one & likewise, one |= likewise;
+    }
+    Decisive decisive;
+    if (several != 0) mark_decisive(steps, limit, end, several, now, meant, decisive);
+    // Of several crossings that coincide only those count that decide.
+    const auto counts = [&](int row) {
+      constexpr unsigned kAll = (1u << N) - 1;
+      return F::M::from_bits(decisive.any == 0 ? kAll : (~decisive.any | decisive.rays[row]) & kAll);
+    };
     F same = inf;
     auto matched = inf < inf;
     for (int row = 0; row < rows_.rows; ++row) {
       const F t = F::load(rows_.t[row]);
       const auto likewise = meant(row, t);
       matched = matched | likewise;
-      if (is_seen(row)) same = select(likewise, min(t, same), same);
+      if (is_seen(row)) same = select(likewise & counts(row), min(t, same), same);
     }
     const F chosen = select(matched, same, next);
     I least(0x7fffffff), at(0);
     for (int row = 0; row < rows_.rows; ++row) {
       if (!is_seen(row)) continue;
       const F t = F::load(rows_.t[row]);
-      const auto candidate = (t == chosen) & (t > limit) & (meant(row, t) | ~matched);
+      const auto candidate = (t == chosen) & (t > limit) & ((meant(row, t) & counts(row)) | ~matched);
       const I item(static_cast<std::int32_t>(rows_.item[row]));
       const auto before = mask_cast<std::int32_t>(candidate) & (item < least);
       least = select(before, item, least), at = select(before, I(row), at);

@@ -126,6 +126,37 @@ TEST(Csg, CoincidentFacesLeaveNoSlivers) {
 }
 
 /// A subtracted solid shows its own surface with reversed normals.
+/// Where faces coincide, the one is seen that decides: not that of an operand which is cut away there.
+TEST(Csg, OfCoincidentFacesTheDecisiveOneIsSeen) {
+  const Geometry cutter = cube({-9, -9, -9}, {9, 9, 0}, 9);
+  for (const bool turned : {false, true})
+    for (const bool large : {false, true}) {
+      const Geometry below = cube({-1, -1, -1}, {1, 1, 1}, 1), above = cube({-1, -1, -1}, {1, 1, 1}, 2);
+      CsgExpression part = combine(CsgOp::intersect, {below, cutter}),
+                    rest = combine(CsgOp::subtract, {above, cutter}), all = combine(CsgOp::unite, {});
+      all.children = turned ? std::vector{rest, part} : std::vector{part, rest};
+      // Trees of more than six leaves are entered by their nodes.
+      if (large)
+        for (int k = 0; k < 12; ++k)
+          all.children.push_back({CsgOp::operand, {ball({0, 20.0 + 3 * k, 0}, 1, 3)}, {}});
+      const auto accel = built(whole(all));
+      for (const float z : {-0.5f, 0.5f}) {
+        const Ray ray = ray_along_x(0.25f, z);
+        EXPECT_EQ(crossings(*accel, ray), (Distances{7, 9}));
+        for (const SurfaceInteraction& s : surfaces_along(*accel, ray))
+          EXPECT_EQ(s.user, z < 0 ? 1u : 2u) << turned << large << z;
+      }
+    }
+  // Where all decide, as in intersections, or none alone, as in unions, it is the first.
+  const Geometry a = cube({-1, -1, -1}, {1, 1, 1}, 1), b = cube({-1, -1, -1}, {1, 1, 1}, 2);
+  for (const CsgOp op : {CsgOp::unite, CsgOp::intersect}) {
+    const auto accel = built(whole(combine(op, {a, b})));
+    EXPECT_EQ(crossings(*accel, ray_along_x(0.25f, 0.5f)), (Distances{7, 9}));
+    for (const SurfaceInteraction& s : surfaces_along(*accel, ray_along_x(0.25f, 0.5f)))
+      EXPECT_EQ(s.user, 1u);
+  }
+}
+
 TEST(Csg, SubtractedSurfacesAreTurnedRoundAndKeepTheirUser) {
   const auto accel =
       built(whole(combine(CsgOp::subtract, {cube({-1, -1, -1}, {1, 1, 1}, 7), ball({0, 0, 0}, 0.5, 9)})));
