@@ -328,32 +328,36 @@ class CsgLanes {
     const auto is_seen = [&](int row) {
       return csg_.unseen.empty() || csg_.unseen[csg_.solids->geometry_of(rows_.item[row])] == 0;
     };
-    unsigned one = 0, several = 0;
-    for (int row = 0; row < rows_.rows; ++row) {
-      const unsigned likewise = bits(meant(row, F::load(rows_.t[row]))) & turned;
-      several |= one & likewise, one |= likewise;
-    }
-    Decisive decisive;
-    if (several != 0) mark_decisive(steps, limit, end, several, now, meant, decisive);
-    // Of several crossings that coincide only those count that decide.
-    const auto counts = [&](int row) {
-      constexpr unsigned kAll = (1u << N) - 1;
-      return F::M::from_bits(decisive.any == 0 ? kAll : (~decisive.any | decisive.rays[row]) & kAll);
-    };
     F same = inf;
-    auto matched = inf < inf;
+    auto matched = inf < inf, several = matched;
     for (int row = 0; row < rows_.rows; ++row) {
       const F t = F::load(rows_.t[row]);
       const auto likewise = meant(row, t);
-      matched = matched | likewise;
-      if (is_seen(row)) same = select(likewise & counts(row), min(t, same), same);
+      several = several | (matched & likewise), matched = matched | likewise;
+      if (is_seen(row)) same = select(likewise, min(t, same), same);
+    }
+    // Of several crossings that coincide only those count that decide.
+    Decisive decisive;
+    const unsigned asked = bits(several) & turned;
+    if (asked != 0) mark_decisive(steps, limit, end, asked, now, meant, decisive);
+    const auto counts = [&](int row) {
+      constexpr unsigned kAll = (1u << N) - 1;
+      return F::M::from_bits((~decisive.any | decisive.rays[row]) & kAll);
+    };
+    if (decisive.any != 0) {
+      same = inf;
+      for (int row = 0; row < rows_.rows; ++row) {
+        const F t = F::load(rows_.t[row]);
+        if (is_seen(row)) same = select(meant(row, t) & counts(row), min(t, same), same);
+      }
     }
     const F chosen = select(matched, same, next);
     I least(0x7fffffff), at(0);
     for (int row = 0; row < rows_.rows; ++row) {
       if (!is_seen(row)) continue;
       const F t = F::load(rows_.t[row]);
-      const auto candidate = (t == chosen) & (t > limit) & ((meant(row, t) & counts(row)) | ~matched);
+      auto candidate = (t == chosen) & (t > limit) & (meant(row, t) | ~matched);
+      if (decisive.any != 0) candidate = candidate & (counts(row) | ~matched);
       const I item(static_cast<std::int32_t>(rows_.item[row]));
       const auto before = mask_cast<std::int32_t>(candidate) & (item < least);
       least = select(before, item, least), at = select(before, I(row), at);
