@@ -12,6 +12,7 @@
 #include "io/scene/scene_file.h"
 #include "io/yaml/write_yaml.h"
 #include "render/picture/render.h"
+#include "tests/io/pov_pixel.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::pov_modifiers_test {
@@ -57,14 +58,8 @@ void expect_same_picture(const std::string& text, const std::string& means) {
 Vec3f middle(const std::string& text,
              const std::string& version = "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n") {
   const TempDir dir;
-  Scene scene =
-      load_scene(dir.write("scene.pov", version + "camera { location -9*z look_at 0 angle 1 }\n" + text));
-  scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
-  const Picture picture = render(scene, {}).picture;
-  Vec3f color;
-  int k = 0;
-  for (const char* channel : {"R", "G", "B"}) color[k++] = picture.find(channel)->values[0];
-  return color;
+  return test::pixel_of(
+      dir.write("scene.pov", version + "camera { location -9*z look_at 0 angle 1 }\n" + text));
 }
 
 struct Same {
@@ -516,20 +511,13 @@ TEST(PovModifiers, ImagesLieWherePovRayLaysThem) {
             "0 120 0 60 120 0 120 120 0 180 120 0 0 180 0 60 180 0 120 180 0 180 180 0");
   // Red and green, in steps of 60/255, at a place.
   const auto texel = [&](const std::string& image, const std::string& place) {
-    Scene scene = load_scene(
+    const Vec3f color = test::pixel_of(
         dir.write("scene.pov", "#version 3.7; global_settings { assumed_gamma 1 } camera { location " +
                                    place + " - 9*z look_at " + place + " angle 0.05 } sphere { " + place +
                                    ", 0.02 pigment { image_map { ppm \"ramp.ppm\" " + image +
                                    " } finish { ambient 1 diffuse 0 } }"));
-    scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
-    const ImageTextures textures(scene.textures, scene.texture_places);
-    RenderOptions options;
-    options.textures = &textures;
-    const Picture picture = render(scene, options).picture;
-    const auto steps = [&](const char* channel) {
-      return static_cast<int>(std::lround(double{picture.find(channel)->values[0]} * 255 / 60));
-    };
-    return std::pair(steps("R"), steps("G"));
+    const auto steps = [](float value) { return static_cast<int>(std::lround(double{value} * 255 / 60)); };
+    return std::pair(steps(color.x), steps(color.y));
   };
   using Texel = std::pair<int, int>;
   const char* const flat = "once } rotate 90*x scale 2";

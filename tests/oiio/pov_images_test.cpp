@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "io/image/texture.h"
 #include "io/scene/pov_scene.h"
-#include "render/picture/render.h"
+#include "tests/io/pov_pixel.h"
 #include "tests/oiio/image_support.h"
 #include "tests/support/temp_dir.h"
 
@@ -19,21 +18,11 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// The colour of the middle of a picture that looks along z.
 Vec3f middle(const TempDir& dir, const std::string& text) {
-  Scene scene =
-      load_scene(dir.write("scene.pov",
-                           "#version 3.7; global_settings { assumed_gamma 1 } camera { location -9*z look_at "
-                           "0 angle 1 } plane { -z, -3 pigment { rgb <1, 1, .5> } finish { ambient 1 "
-                           "diffuse 0 } } " +
-                               text));
-  scene.film.width = scene.film.height = 1, scene.integrator.samples = 1;
-  const ImageTextures textures(scene.textures, scene.texture_places);
-  RenderOptions options;
-  options.textures = &textures;
-  const Picture picture = render(scene, options).picture;
-  Vec3f color;
-  int k = 0;
-  for (const char* channel : {"R", "G", "B"}) color[k++] = picture.find(channel)->values[0];
-  return color;
+  return test::pixel_of(dir.write(
+      "scene.pov",
+      "#version 3.7; global_settings { assumed_gamma 1 } camera { location -9*z look_at 0 angle 1 } "
+      "plane { -z, -3 pigment { rgb <1, 1, .5> } finish { ambient 1 diffuse 0 } } " +
+          text));
 }
 
 TEST(PovImages, AlphaLetsLightPass) {

@@ -57,6 +57,15 @@ bool is_object(std::string_view keyword) {
   return std::ranges::find(kObjects, keyword) != kObjects.end();
 }
 
+std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) {
+  std::vector<std::shared_ptr<const Block>> objects;
+  for (const Element& e : block.elements)
+    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
+        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
+      objects.push_back(*inner);
+  return objects;
+}
+
 bool has_word(const Block& block, std::string_view word) {
   return std::ranges::any_of(block.elements, [&](const Element& e) {
     const auto* const found = std::get_if<Word>(&e.value);

@@ -3,6 +3,8 @@
 /// some. Within io/ only.
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "io/pov/translate/context.h"
 
@@ -28,6 +30,8 @@ Extent extent_of(Context& context, const Block& block);
 /// before its transforms.
 Extent limits_of(Context& context, const Block& block, std::string_view keyword);
 
+/// The objects that stand in a block.
+std::vector<std::shared_ptr<const Block>> objects_in(const Block& block);
 /// Whether a block of this keyword is an object.
 bool is_object(std::string_view keyword);
 /// Whether a word stands in a block.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/pov/translate/pattern_node.h"
 #include "io/pov/translate/texture.h"
 #include "io/yaml/write_yaml.h"
 

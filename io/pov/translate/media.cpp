@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/pov/translate/pattern_node.h"
 #include "io/yaml/write_yaml.h"
 
 namespace oktett::pov {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/image/image.h"
+#include "io/pov/translate/pattern_node.h"
 #include "io/pov/translate/pigment.h"
 
 namespace oktett::pov {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/pov/translate/shapes.h"
+#include "io/pov/translate/skins.h"
 #include "io/pov/translate/view.h"
 
 namespace oktett::pov {
@@ -93,16 +94,6 @@ bool ObjectWriter::holds(std::map<const Block*, bool>& known, const Block& block
   });
   if (!block.name.empty()) known[&block] = has;
   return has;
-}
-
-/// The objects that stand in a block.
-static std::vector<std::shared_ptr<const Block>> objects_in(const Block& block) {
-  std::vector<std::shared_ptr<const Block>> objects;
-  for (const Element& e : block.elements)
-    if (const auto* const inner = std::get_if<std::shared_ptr<const Block>>(&e.value);
-        inner != nullptr && *inner != nullptr && is_object((*inner)->keyword))
-      objects.push_back(*inner);
-  return objects;
 }
 
 void ObjectWriter::add(const std::shared_ptr<const Block>& block, const Moves& moves, bool casts_shadow) {
@@ -462,52 +453,6 @@ std::vector<ObjectWriter::Built> ObjectWriter::build_all(
   return built;
 }
 
-/// The boxes around those shapes of a solid that have flat faces, in the space that it stands in. Not of more
-/// blocks than can be a matter of faces: objects of objects can double at each declaration.
-static std::vector<Extent> flat_shapes(Context& context, const Block& block, int& most_blocks) {
-  constexpr std::array<std::string_view, 3> kFlat{"box", "cylinder", "cone"};
-  if (--most_blocks < 0) return {};
-  if (std::ranges::find(kFlat, block.keyword) != kFlat.end()) {
-    const Extent extent = extent_of(context, block);
-    return extent.is_finite() && !has_word(block, "open") ? std::vector{extent} : std::vector<Extent>{};
-  }
-  std::vector<Extent> all;
-  for (const std::shared_ptr<const Block>& inner : objects_in(block))
-    std::ranges::copy(flat_shapes(context, *inner, most_blocks), std::back_inserter(all));
-  if (all.empty()) return all;
-  const Affine map = moves_in(context, block).all;
-  for (Extent& extent : all) extent = extent.moved(map);
-  return all;
-}
-static std::vector<Extent> flat_shapes(Context& context, const Block& block) {
-  int most_blocks = 256;
-  return flat_shapes(context, block, most_blocks);
-}
-
-/// How far the sides of a box are moved outwards.
-struct Growth {
-  Vec3d lo{0, 0, 0}, hi{0, 0, 0};
-
-  /// The transform that moves them; empty if none is.
-  Moves moves(const Extent& box, const Place& where) const {
-    Moves moves;
-    Vec3d scale{1, 1, 1}, shift{0, 0, 0};
-    for (int k = 0; k < 3; ++k) {
-      const double width = box.hi[k] - box.lo[k];
-      if ((lo[k] == 0 && hi[k] == 0) || !(width > -lo[k] - hi[k])) continue;
-      scale[k] = 1 + (lo[k] + hi[k]) / width, shift[k] = box.lo[k] - lo[k] - scale[k] * box.lo[k];
-    }
-    if (scale == Vec3d{1, 1, 1}) return moves;
-    moves.add({Move::Kind::scale, scale, {}, where});
-    moves.add({Move::Kind::translate, shift, {}, where});
-    return moves;
-  }
-};
-
-static double size_of(const Extent& box) {
-  return std::max({max_component(abs(box.lo)), max_component(abs(box.hi)), max_component(box.hi - box.lo)});
-}
-
 ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
                                                  const std::vector<std::shared_ptr<const Block>>& children,
                                                  const Modifiers& m, const Outer& outer) {
@@ -551,36 +496,14 @@ ObjectWriter::Maybe ObjectWriter::build_children(const Block& block,
 
 void ObjectWriter::leave_skins(const std::vector<std::shared_ptr<const Block>>& children,
                                std::vector<Built>& parts) {
-  const std::vector<Extent> shapes = flat_shapes(context_, *children[0]);
-  const Extent whole = extent_of(context_, *children[0]);
-  if (shapes.empty() || !whole.is_finite()) return;
-  constexpr double kSame = 1e-9;
-  const double size = size_of(whole), skin = 4e-6 * size;
-  const auto same = [&](double a, double b) { return std::abs(a - b) <= kSame * size; };
-  Growth first;
-  std::size_t at = 0;
-  for (const auto& child : children) {
-    if (child->keyword == "light_source") continue;
-    const Built& part = parts[at++];
-    if (at == 1 || !part.node || part.negative || part.surfaces) continue;
-    const Extent box = extent_of(context_, *child);
-    if (!box.is_finite() || flat_shapes(context_, *child).empty()) continue;
-    // Where it is the outermost face, the skin lies outside, so that what is subtracted ends at its place.
-    Growth own;
-    for (int k = 0; k < 3; ++k) {
-      const auto any = [&](auto&& meets) { return std::ranges::any_of(shapes, meets); };
-      if (same(box.lo[k], whole.lo[k]))
-        first.lo[k] = skin;
-      else if (any([&](const Extent& shape) { return same(box.lo[k], shape.lo[k]); }))
-        own.lo[k] = -skin;
-      if (same(box.hi[k], whole.hi[k]))
-        first.hi[k] = skin;
-      else if (any([&](const Extent& shape) { return same(box.hi[k], shape.hi[k]); }))
-        own.hi[k] = -skin;
-    }
-    add_moves(part.node, own.moves(box, child->where), child->where);
-  }
-  add_moves(parts[0].node, first.moves(whole, children[0]->where), children[0]->where);
+  std::vector<std::shared_ptr<const Block>> solids;
+  std::ranges::copy_if(children, std::back_inserter(solids),
+                       [](const auto& child) { return child->keyword != "light_source"; });
+  std::vector<bool> counts;
+  for (const Built& part : parts) counts.push_back(part.node && !part.negative && !part.surfaces);
+  const std::vector<Moves> moves = room_for_skins(context_, solids, counts);
+  for (std::size_t i = 0; i < moves.size(); ++i)
+    if (parts[i].node) add_moves(parts[i].node, moves[i], solids[i]->where);
 }
 
 ObjectWriter::Maybe ObjectWriter::build_light_group(const Block& block,

@@ -89,25 +89,4 @@ class PatternReader {
   PigmentTexture pigment_texture_;
 };
 
-/// Adds an entry [at, value] to the `map` of a pattern.
-void push_entry(Tree& tree, const Place& where, Node map, double at, Node value);
-
-/// `color`, and `under` as far as `filter` lets it through; each a colour, a number or a texture.
-Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under);
-
-/// The texture of a pattern whose values show `values`: the list `colors` of list patterns, else `map`. Null:
-/// its values are numbers.
-Node pattern_node(Context& context, const PovPattern& pattern, Node values);
-
-/// The alpha of an image as greys.
-PovPattern alpha_of(Tree& tree, const PovPattern& image);
-
-/// An image that is not repeated, as it repeats at places on the image.
-PovPattern repeated_image(const PovPattern& once);
-/// What it shows: `inside` on its unit square, `outside` beyond.
-Node once_node(Context& context, const PovPattern& pattern, Node inside, Node outside);
-
-/// How many times longer a length is in space than in the pattern, in the mean over all directions.
-double scale_of(const PovPattern& pattern);
-
 }  // namespace oktett::pov
