@@ -2,7 +2,7 @@
 # public. Each is copied to the build tree's include/oktett, from where it is installed, with `#include "folder/name.h"`
 # turned into `#include <oktett/name.h>`. A public header may include public headers and the standard library only.
 set(OKTETT_PUBLIC_HEADERS
-  core/platform.h core/vec3.h core/box.h core/transform.h core/soa.h core/mesh_attributes.h core/mesh.h core/ray.h core/isa.h core/error.h
+  core/platform.h core/noise_generator.h core/vec3.h core/box.h core/transform.h core/soa.h core/mesh_attributes.h core/mesh.h core/ray.h core/isa.h core/error.h
   core/surface_interaction.h
   kernels/closed/shape_data.h kernels/exact/polynomial_expression.h kernels/roots/root_method.h
   kernels/heights/make_height_grid.h

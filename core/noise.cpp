@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/noise_steps.h"
+#include "core/povray_lattice.h"
 #include "core/random.h"
 
 namespace oktett {
@@ -18,7 +19,7 @@ std::uint64_t lattice_bits(std::int64_t x, std::int64_t y, std::int64_t z) {
 
 namespace {
 
-using noise_steps::between, noise_steps::fade, noise_steps::mix;
+using noise_steps::between, noise_steps::mix;
 
 /// A coordinate as the integer below it and what it is above that; with 0 and NaN where it is not finite.
 struct CellCoordinate {
@@ -67,8 +68,39 @@ Vec3d edge_vector(std::uint64_t bits) {
   return {edge_product(bits, {1, 0, 0}), edge_product(bits, {0, 1, 0}), edge_product(bits, {0, 0, 1})};
 }
 
-/// The derivative of fade.
-double fade_slope(double t) { return 30 * (t * t) * ((t - 1) * (t - 1)); }
+/// What a kind of noise has at the corners of cells, and how it goes over from one to the next.
+struct GradientLattice {
+  using Corner = std::uint64_t;
+  static constexpr NoiseKind kKind = NoiseKind::gradient;
+  static constexpr double kSteepest = 1.875;  ///< fade_slope at 1/2, where it is greatest
+  static void corners(std::int64_t x, std::int64_t y, std::int64_t z, Corner (&c)[8]) {
+    corner_bits(x, y, z, c);
+  }
+  static double at_corner(Corner) { return 0; }
+  static double product(Corner c, const Vec3d& d) { return edge_product(c, d); }
+  static Vec3d vector(Corner c) { return edge_vector(c); }
+  static double fade(double t) { return noise_steps::fade(t); }
+  static double fade_slope(double t) { return 30 * (t * t) * ((t - 1) * (t - 1)); }
+};
+struct PovrayLattice {
+  using Corner = const double*;
+  static constexpr NoiseKind kKind = NoiseKind::povray;
+  static constexpr double kSteepest = 1.5;
+  static void corners(std::int64_t x, std::int64_t y, std::int64_t z, Corner (&c)[8]) {
+    povray_corners(x, y, z, c);
+  }
+  static double at_corner(Corner c) { return c[0]; }
+  static double product(Corner c, const Vec3d& d) { return c[0] + dot(vector(c), d); }
+  static Vec3d vector(Corner c) { return {c[1], c[2], c[3]}; }
+  static double fade(double t) { return t * t * (3 - 2 * t); }
+  static double fade_slope(double t) { return 6 * t * (1 - t); }
+};
+
+/// Calls f with the lattice of a kind.
+template <class F>
+auto with_lattice(NoiseKind kind, const F& f) {
+  return kind == NoiseKind::gradient ? f(GradientLattice{}) : f(PovrayLattice{});
+}
 
 /// Between four edges of the cell along one of the axes; rise(i, j) is of the edge from corner i to j.
 template <class T, class Rise>
@@ -82,40 +114,47 @@ T between_edges(int axis, const T (&t)[3], const Rise& rise) {
   return mix(mix(edge[0], edge[1], t[first]), mix(edge[2], edge[3], t[first]), t[second]);
 }
 
-/// A point's place in its cell, the random bits and the products of the cell's corners.
+/// A point's place in its cell, and what the cell's corners have there.
+template <class L>
 struct Place {
   explicit Place(const Vec3d& p) {
     const CellCoordinate x = split(p.x), y = split(p.y), z = split(p.z);
-    corner_bits(x.cell, y.cell, z.cell, bits);
+    L::corners(x.cell, y.cell, z.cell, lattice);
     f = {x.fraction, y.fraction, z.fraction};
-    for (int i = 0; i < 8; ++i) corner[i] = edge_product(bits[i], f - corner_place(i));
-    for (int k = 0; k < 3; ++k) t[k] = fade(f[k]);
+    for (int i = 0; i < 8; ++i) corner[i] = L::product(lattice[i], f - corner_place(i));
+    for (int k = 0; k < 3; ++k) t[k] = L::fade(f[k]);
   }
 
-  std::uint64_t bits[8];
+  typename L::Corner lattice[8];
   Vec3d f;
   double corner[8], t[3];
 };
 
 }  // namespace
 
-double gradient_noise(const Vec3d& p) {
-  const Place at(p);
-  return between(at.corner, at.t);
+double gradient_noise(const Vec3d& p) { return noise_value(p, NoiseKind::gradient); }
+
+double noise_value(const Vec3d& p, NoiseKind kind) {
+  return with_lattice(kind, [&]<class L>(L) {
+    const Place<L> at(p);
+    return between(at.corner, at.t);
+  });
 }
 
-NoiseSlope noise_slope(const Vec3d& p) {
-  const Place at(p);
-  NoiseSlope slope{between(at.corner, at.t), {}};
-  Vec3d vectors[8];
-  for (int i = 0; i < 8; ++i) vectors[i] = edge_vector(at.bits[i]);
-  for (int k = 0; k < 3; ++k) {
-    const double steep = fade_slope(at.f[k]);
-    slope.gradient[k] = between_edges(k, at.t, [&](int i, int j) {
-      return (at.corner[j] - at.corner[i]) * steep + mix(vectors[i][k], vectors[j][k], at.t[k]);
-    });
-  }
-  return slope;
+NoiseSlope noise_slope(const Vec3d& p, NoiseKind kind) {
+  return with_lattice(kind, [&]<class L>(L) {
+    const Place<L> at(p);
+    NoiseSlope slope{between(at.corner, at.t), {}};
+    Vec3d vectors[8];
+    for (int i = 0; i < 8; ++i) vectors[i] = L::vector(at.lattice[i]);
+    for (int k = 0; k < 3; ++k) {
+      const double steep = L::fade_slope(at.f[k]);
+      slope.gradient[k] = between_edges(k, at.t, [&](int i, int j) {
+        return (at.corner[j] - at.corner[i]) * steep + mix(vectors[i][k], vectors[j][k], at.t[k]);
+      });
+    }
+    return slope;
+  });
 }
 
 namespace {
@@ -145,23 +184,28 @@ Stretch product(const Vec3d& g, const Vec3d& lo, const Vec3d& hi) {
 }
 
 /// Of a box in one cell: of the value, and of the three derivatives.
-void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d& hi, Stretch (&out)[4]) {
+template <class L>
+void range_in_cell(const typename L::Corner (&lattice)[8], const Vec3d& lo, const Vec3d& hi,
+                   Stretch (&out)[4]) {
   Vec3d vectors[8];
   Stretch corner[8], t[3];
   for (int i = 0; i < 8; ++i) {
     const Vec3d at = corner_place(i);
-    vectors[i] = edge_vector(bits[i]);
-    corner[i] = product(vectors[i], lo - at, hi - at);
+    const double value = L::at_corner(lattice[i]);
+    vectors[i] = L::vector(lattice[i]);
+    corner[i] = product(vectors[i], lo - at, hi - at) + Stretch{value, value};
   }
-  for (int k = 0; k < 3; ++k) t[k] = {std::clamp(fade(lo[k]), 0.0, 1.0), std::clamp(fade(hi[k]), 0.0, 1.0)};
+  for (int k = 0; k < 3; ++k)
+    t[k] = {std::clamp(L::fade(lo[k]), 0.0, 1.0), std::clamp(L::fade(hi[k]), 0.0, 1.0)};
   out[0] = between(corner, t);
   for (int k = 0; k < 3; ++k) {
     // It rises up to 1/2 and falls from there.
-    const double a = fade_slope(lo[k]), b = fade_slope(hi[k]);
-    const Stretch steep{std::min(a, b), lo[k] <= 0.5 && 0.5 <= hi[k] ? 1.875 : std::max(a, b)};
+    const double a = L::fade_slope(lo[k]), b = L::fade_slope(hi[k]);
+    const Stretch steep{std::min(a, b), lo[k] <= 0.5 && 0.5 <= hi[k] ? L::kSteepest : std::max(a, b)};
     out[1 + k] = between_edges(k, t, [&](int i, int j) {
       // The difference of two products is one with the difference of the vectors, but for a constant.
-      const double apart = dot(vectors[i], corner_place(i)) - dot(vectors[j], corner_place(j));
+      const double apart = dot(vectors[i], corner_place(i)) - dot(vectors[j], corner_place(j)) +
+                           (L::at_corner(lattice[j]) - L::at_corner(lattice[i]));
       const Stretch rise = product(vectors[j] - vectors[i], lo, hi) + Stretch{apart, apart};
       const Stretch from{vectors[i][k], vectors[i][k]}, to{vectors[j][k], vectors[j][k]};
       return scaled(rise, steep) + mix(from, to, t[k]);
@@ -169,12 +213,12 @@ void range_in_cell(const std::uint64_t (&bits)[8], const Vec3d& lo, const Vec3d&
   }
 }
 
-}  // namespace
-
-NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
+template <class L>
+NoiseRange range_of(const Vec3d& lo, const Vec3d& hi) {
   constexpr double kFar = 0x1p50, kMostCells = 8;
-  const Vec3d steepest{kMostNoiseSlope, kMostNoiseSlope, kMostNoiseSlope};
-  const NoiseRange all{-kMostNoise, kMostNoise, -steepest, steepest};
+  constexpr NoiseBounds kMost = bounds_of(L::kKind);
+  const Vec3d steepest{kMost.slope, kMost.slope, kMost.slope};
+  const NoiseRange all{-kMost.value, kMost.value, -steepest, steepest};
   std::int64_t first[3], last[3];
   double cells = 1;
   for (int k = 0; k < 3; ++k) {
@@ -190,14 +234,14 @@ NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
   for (std::int64_t z = first[2]; z <= last[2]; ++z)
     for (std::int64_t y = first[1]; y <= last[1]; ++y)
       for (std::int64_t x = first[0]; x <= last[0]; ++x) {
-        std::uint64_t bits[8];
-        corner_bits(x, y, z, bits);
+        typename L::Corner lattice[8];
+        L::corners(x, y, z, lattice);
         const double corner[3] = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
         Vec3d from, to;
         for (int k = 0; k < 3; ++k)
           from[k] = std::clamp(lo[k] - corner[k], 0.0, 1.0), to[k] = std::clamp(hi[k] - corner[k], 0.0, 1.0);
         Stretch part[4];
-        range_in_cell(bits, from, to, part);
+        range_in_cell<L>(lattice, from, to, part);
         for (int i = 0; i < 4; ++i)
           whole[i] = is_first ? part[i]
                               : Stretch{std::min(whole[i].lo, part[i].lo), std::max(whole[i].hi, part[i].hi)};
@@ -207,19 +251,25 @@ NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi) {
   Vec3d middle;
   double reach = 0;
   for (int k = 0; k < 3; ++k) {
-    range.slope_lo[k] = std::max(whole[1 + k].lo - kNoiseSlopeError, -kMostNoiseSlope);
-    range.slope_hi[k] = std::min(whole[1 + k].hi + kNoiseSlopeError, kMostNoiseSlope);
+    range.slope_lo[k] = std::max(whole[1 + k].lo - kNoiseSlopeError, -kMost.slope);
+    range.slope_hi[k] = std::min(whole[1 + k].hi + kNoiseSlopeError, kMost.slope);
     middle[k] = lo[k] + 0.5 * (hi[k] - lo[k]);
     reach += std::max(-range.slope_lo[k], range.slope_hi[k]) * std::max(middle[k] - lo[k], hi[k] - middle[k]);
   }
   if (reach < 1) {
     // By the mean value theorem, which tells more of small boxes.
-    const double at = gradient_noise(middle);
+    const double at = noise_value(middle, L::kKind);
     whole[0].lo = std::max(whole[0].lo, at - reach), whole[0].hi = std::min(whole[0].hi, at + reach);
   }
-  range.lo = std::max(whole[0].lo - kNoiseError, -kMostNoise);
-  range.hi = std::min(whole[0].hi + kNoiseError, kMostNoise);
+  range.lo = std::max(whole[0].lo - kNoiseError, -kMost.value);
+  range.hi = std::min(whole[0].hi + kNoiseError, kMost.value);
   return range;
+}
+
+}  // namespace
+
+NoiseRange noise_range(const Vec3d& lo, const Vec3d& hi, NoiseKind kind) {
+  return with_lattice(kind, [&]<class L>(L) { return range_of<L>(lo, hi); });
 }
 
 }  // namespace oktett

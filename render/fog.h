@@ -43,6 +43,7 @@ struct Fog {
             "swaths: how many times smaller than a unit they are along each axis; zeros: none");
     p.field("turbulence_depth", turbulence_depth, kUnitInterval, "the most that they take from fog");
     clouds.describe(p);
+    clouds.describe_generator(p);
   }
 };
 

@@ -13,10 +13,10 @@ namespace oktett {
 namespace {
 
 /// Noise of all octaves, in [-1, 1].
-double turbulence(const Turbulence& t, Vec3d p) {
+double turbulence(const Turbulence& t, Vec3d p, NoiseGenerator generator) {
   double sum = 0, total = 0, weight = 1;
   for_each_octave<1>(
-      t.octaves,
+      t.octaves, generator,
       [&](Vec3d(&place)[1]) {
         place[0] = p;
         // Moved by a half, so that the zeros of the octaves do not fall together.
@@ -30,7 +30,7 @@ double turbulence(const Turbulence& t, Vec3d p) {
   return sum / total;
 }
 
-double value_of(const CheckerPattern& c, const Vec3d& p) {
+double value_of(const CheckerPattern& c, const Vec3d& p, NoiseGenerator) {
   // Moved a little, so that faces at multiples of the size do not lie where the colours meet.
   constexpr double kAside = 0x1p-12;
   const Vec3d q = p / c.size;
@@ -38,29 +38,29 @@ double value_of(const CheckerPattern& c, const Vec3d& p) {
   return (sum & 1) != 0 ? 1 : 0;
 }
 
-double value_of(const GradientPattern& g, const Vec3d& p) {
+double value_of(const GradientPattern& g, const Vec3d& p, NoiseGenerator) {
   const Vec3d along = g.to - g.from;
   return dot(p - g.from, along) / dot(along, along);
 }
 
-double value_of(const RadialPattern& r, const Vec3d& p) {
+double value_of(const RadialPattern& r, const Vec3d& p, NoiseGenerator) {
   return (length(p - r.center) - r.inner) / (r.outer - r.inner);
 }
 
-double value_of(const NoisePattern& n, const Vec3d& p) {
-  return 0.5 + 0.5 * turbulence(n.turbulence, p / n.size);
+double value_of(const NoisePattern& n, const Vec3d& p, NoiseGenerator generator) {
+  return 0.5 + 0.5 * turbulence(n.turbulence, p / n.size, generator);
 }
 
-double value_of(const MarblePattern& m, const Vec3d& p) {
+double value_of(const MarblePattern& m, const Vec3d& p, NoiseGenerator generator) {
   const Vec3d q = p / m.size;
-  const double layer = q.x + m.distortion * turbulence(m.turbulence, q);
+  const double layer = q.x + m.distortion * turbulence(m.turbulence, q, generator);
   return 0.5 - 0.5 * portable::cos(2 * std::numbers::pi * (layer - std::floor(layer)));
 }
 
-double value_of(const WoodPattern& w, const Vec3d& p) {
+double value_of(const WoodPattern& w, const Vec3d& p, NoiseGenerator generator) {
   const Vec3d q = p / w.size;
   // Noise is drawn out along the trunk.
-  const double bend = turbulence(w.turbulence, Vec3d{q.x, q.y * 0.1, q.z} * 0.25);
+  const double bend = turbulence(w.turbulence, Vec3d{q.x, q.y * 0.1, q.z} * 0.25, generator);
   const double ring = std::sqrt(q.x * q.x + q.z * q.z) + 4 * w.distortion * bend;
   const double part = ring - std::floor(ring);
   return part * part * (3 - 2 * part);
@@ -69,7 +69,7 @@ double value_of(const WoodPattern& w, const Vec3d& p) {
 /// Whether values beyond 0 and 1 have the first and the last colour, unless a wave is asked for.
 template <class P>
 constexpr bool kClamps = requires(const P& pattern) {
-  value_of(pattern, Vec3d{});
+  value_of(pattern, Vec3d{}, NoiseGenerator{});
 };
 /// Whether the pattern has single values.
 template <class P>
@@ -106,7 +106,7 @@ PatternSample sample(const Pattern& pattern, const Vec3d& p, const PatternFrame&
         if constexpr (kShowsColors<P>) {
           return {0, 0};
         } else if constexpr (kClamps<P>) {
-          const double raw = value_of(kind, p);
+          const double raw = value_of(kind, p, frame.turbulence.generator);
           return {raw, is_plain(frame.wave) ? clamped(raw) : waved(frame.wave, WaveShape::ramp, raw)};
         } else {
           const double raw = raw_value(kind, p, frame);
@@ -175,6 +175,19 @@ std::optional<Color> shown_color(const Pattern& pattern, const Vec3d& p, const P
       pattern);
 }
 
+/// The two entries of a map that a value is between, and how far it is from the first to the second.
+struct MapPlace {
+  const PatternEntry &before, &after;
+  double part;
+};
+MapPlace place_in_map(const std::vector<PatternEntry>& map, double value) {
+  const auto after = std::ranges::find_if(map, [&](const PatternEntry& entry) { return entry.at > value; });
+  if (after == map.begin()) return {*after, *after, 0};
+  const PatternEntry& before = *(after - 1);
+  if (after == map.end() || before.at == value) return {before, before, 0};
+  return {before, *after, (value - before.at) / (after->at - before.at)};
+}
+
 /// The colour at a place of a pattern whose value there is `value`.
 Color color_at(const PatternTexture& texture, double value, const Vec3d& place,
                const PatternTextures* others) {
@@ -191,13 +204,10 @@ Color color_at(const PatternTexture& texture, double value, const Vec3d& place,
     if (entry.texture.index == TextureIndex{}.index) return entry.color;
     return others == nullptr ? Color{0, 0, 0} : others->color(entry.texture.index, place);
   };
-  const std::vector<PatternEntry>& map = texture.map;
-  const auto after = std::ranges::find_if(map, [&](const PatternEntry& entry) { return entry.at > value; });
-  if (after == map.begin()) return color_of(*after);
-  const PatternEntry& before = *(after - 1);
-  if (after == map.end() || before.at == value) return color_of(before);
-  const auto part = static_cast<float>((value - before.at) / (after->at - before.at));
-  return color_of(before) * (1 - part) + color_of(*after) * part;
+  const MapPlace at = place_in_map(texture.map, value);
+  if (&at.before == &at.after) return color_of(at.before);
+  const auto part = static_cast<float>(at.part);
+  return color_of(at.before) * (1 - part) + color_of(at.after) * part;
 }
 
 /// What a pattern looks like at this scale is smooth.
@@ -254,6 +264,13 @@ bool is_broken(const PatternTexture& texture, const PatternSample& before, const
 
 }  // namespace
 
+void PatternTexture::set_noise_generator(NoiseGenerator generator) {
+  turbulence.generator = generator;
+  for (Warp& warp : warps)
+    if (auto* const turbulent = std::get_if<TurbulenceWarp>(&warp))
+      turbulent->turbulence.generator = generator;
+}
+
 double pattern_value(const Pattern& pattern, const Vec3d& p) {
   const PatternTurbulence none;
   const Wave own;
@@ -267,32 +284,88 @@ Color pattern_color(const PatternTexture& texture, const Vec3d& p, const Pattern
   return color_at(texture, sample(texture.pattern, place, frame).value, place, others);
 }
 
-Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
+namespace {
+
+struct Height {
+  PatternSample sample;
+  double height;
+};
+
+/// The first channel at a place of the pattern.
+Height height_at(const PatternTexture& texture, const Vec3d& place, const PatternTextures* others) {
   const PatternFrame frame{texture.turbulence, texture.wave, others};
-  struct Height {
-    PatternSample sample;
-    double height;
+  if (const std::optional<Color> shown = shown_color(texture.pattern, place, others))
+    return {{shown->x, shown->x}, shown->x};
+  const PatternSample found = sample(texture.pattern, place, frame);
+  if (!texture.map.empty()) return {found, double{color_at(texture, found.value, place, others).x}};
+  const std::vector<Color>& colors = texture.colors;
+  const double at = found.value * static_cast<double>(colors.size() - 1);
+  const auto before = std::min(static_cast<std::size_t>(at), colors.size() - 1);
+  const auto after = std::min(before + 1, colors.size() - 1);
+  const double low = colors[before].x, high = colors[after].x;
+  return {found, low + (high - low) * (at - static_cast<double>(before))};
+}
+
+/// The slope that other textures have together; nothing if the pattern does not show any.
+std::optional<Vec3d> mixed_slope(const PatternTexture& texture, const Vec3d& place,
+                                 const PatternTextures* others) {
+  if (others == nullptr) return std::nullopt;
+  const auto slope_of = [&](const TextureIndex& shown) {
+    return shown == TextureIndex{} ? Vec3d{0, 0, 0} : others->slope(shown.index, place);
   };
-  const auto height_at = [&](const Vec3d& q) -> Height {
-    const Vec3d place = place_in(texture, q);
-    if (const std::optional<Color> shown = shown_color(texture.pattern, place, others))
-      return {{shown->x, shown->x}, shown->x};
-    const PatternSample found = sample(texture.pattern, place, frame);
-    if (!texture.map.empty()) return {found, double{color_at(texture, found.value, place, others).x}};
-    const std::vector<Color>& colors = texture.colors;
-    const double at = found.value * static_cast<double>(colors.size() - 1);
-    const auto before = std::min(static_cast<std::size_t>(at), colors.size() - 1);
-    const auto after = std::min(before + 1, colors.size() - 1);
-    const double low = colors[before].x, high = colors[after].x;
-    return {found, low + (high - low) * (at - static_cast<double>(before))};
-  };
+  if (const auto* const over = std::get_if<OverPattern>(&texture.pattern)) {
+    if (!(over->filter.texture == TextureIndex{})) return std::nullopt;
+    return slope_of(over->color.texture) + slope_of(over->under.texture) * double{over->filter.color.x};
+  }
+  const bool is_some = std::ranges::any_of(
+      texture.map, [](const PatternEntry& entry) { return !(entry.texture == TextureIndex{}); });
+  if (!is_some) return std::nullopt;
+  const PatternFrame frame{texture.turbulence, texture.wave, others};
+  const MapPlace at = place_in_map(texture.map, sample(texture.pattern, place, frame).value);
+  const Vec3d before = slope_of(at.before.texture);
+  return at.part == 0 ? before : before * (1 - at.part) + slope_of(at.after.texture) * at.part;
+}
+
+/// From differences to the corners of a tetrahedron around the place.
+Vec3d tetrahedral_slope(const PatternTexture& texture, const Vec3d& place, const PatternTextures* others) {
+  constexpr double kStep = 0.02;
+  const double third = 1.0 / 3, high = std::sqrt(8.0) / 3, low = std::sqrt(2.0) / 3,
+               side = std::sqrt(6.0) / 3;
+  const Vec3d corners[4] = {{high, -third, 0}, {-low, -third, side}, {-low, -third, -side}, {0, 1, 0}};
+  Vec3d slope{0, 0, 0};
+  for (const Vec3d& corner : corners)
+    slope += corner * (0.75 / kStep * height_at(texture, place + corner * kStep, others).height);
+  return slope;
+}
+
+/// pattern_slope with a noise generator of POV-Ray's.
+Vec3d povray_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
+  const Vec3d place = place_in(texture, texture.to_pattern.point(p));
+  std::optional<Vec3d> slope = mixed_slope(texture, place, others);
+  if (!slope && texture.map.empty()) {
+    // Surfaces lean away from a slope, and towards a bend.
+    slope = povray_bend(texture.pattern, place, {texture.turbulence, texture.wave, others});
+    if (slope) slope = -*slope;
+  }
+  if (!slope) slope = tetrahedral_slope(texture, place, others);
+  for (const Warp& warp : texture.warps)
+    if (const auto* const moved = std::get_if<TransformWarp>(&warp))
+      slope = moved->to_pattern.normal_by_inverse(*slope);
+  return texture.to_pattern.normal_by_inverse(*slope);
+}
+
+}  // namespace
+
+Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others) {
+  if (texture.turbulence.generator != NoiseGenerator::own) return povray_slope(texture, p, others);
   const Vec3d place = texture.to_pattern.point(p);
   const double step = detail_of(texture) * 0x1p-10;
   Vec3d slope;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d before = place, after = place;
     before[axis] -= step, after[axis] += step;
-    const Height high = height_at(after), low = height_at(before);
+    const Height high = height_at(texture, place_in(texture, after), others);
+    const Height low = height_at(texture, place_in(texture, before), others);
     slope[axis] = is_broken(texture, low.sample, high.sample)
                       ? 0
                       : (high.height - low.height) / (after[axis] - before[axis]);

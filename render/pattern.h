@@ -116,14 +116,13 @@ struct WoodPattern {
 };
 
 /// A pattern of any kind. Those of pattern_kinds.h have their place and size by the transform.
-using Pattern =
-    std::variant<CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern,
-                 AgatePattern, AngularPattern, BoxedPattern, BrickPattern, CellsPattern, CracklePattern,
-                 CubicPattern, CylindricalPattern, DentsPattern, DoubleSpiralPattern, FractalPattern,
-                 FunctionPattern, GranitePattern, HexagonPattern, IncidencePattern, LayersPattern,
-                 LeopardPattern, LinearPattern, OnionPattern, OverPattern, PlanarPattern, ProjectedPattern,
-                 QuiltedPattern, RingsPattern, RipplesPattern, SlopePattern, SphericalPattern, SpiralPattern,
-                 TexturePattern, VoxelPattern, WavesPattern, WrinklesPattern>;
+using Pattern = std::variant<
+    CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern, AgatePattern,
+    AngularPattern, BoxedPattern, BrickPattern, BumpsPattern, CellsPattern, CracklePattern, CubicPattern,
+    CylindricalPattern, DentsPattern, DoubleSpiralPattern, FractalPattern, FunctionPattern, GranitePattern,
+    HexagonPattern, IncidencePattern, LayersPattern, LeopardPattern, LinearPattern, OnionPattern, OverPattern,
+    PlanarPattern, ProjectedPattern, QuiltedPattern, RingsPattern, RipplesPattern, SlopePattern,
+    SphericalPattern, SpiralPattern, TexturePattern, VoxelPattern, WavesPattern, WrinklesPattern>;
 
 /// What a pattern shows at one of its values.
 struct PatternEntry {
@@ -152,6 +151,9 @@ struct PatternTexture {
   std::vector<Warp>
       warps{};  ///< between the turbulence and the transform; the first is nearest to the pattern
   bool operator==(const PatternTexture&) const = default;
+
+  /// Chooses the noise that the pattern, its turbulence and its warps are made of.
+  void set_noise_generator(NoiseGenerator generator);
 };
 
 /// The textures of a scene, as entries of patterns need them.
@@ -162,6 +164,8 @@ class PatternTextures {
   virtual Color color(std::uint32_t texture, const Vec3d& position) const = 0;
   /// The colour of a texture at these texture coordinates, of an image not filtered.
   virtual Color image(std::uint32_t texture, const Vec2f& uv) const = 0;
+  /// pattern_slope of a texture, times its gain, where the object's own place is this position.
+  virtual Vec3d slope(std::uint32_t, const Vec3d&) const { return {0, 0, 0}; }
   /// The unit normal of the surface on the side of the viewer, and the unit vector to the viewer, in the
   /// world; zero where there is no surface.
   virtual Vec3d normal() const { return {0, 0, 0}; }
@@ -176,7 +180,11 @@ double pattern_value(const Pattern& pattern, const Vec3d& p);
 Color pattern_color(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others = nullptr);
 
 /// The gradient of the first channel of the colour at a point of the object's space, from differences over
-/// a thousandth of the smallest detail. Along an axis where the value jumps it is 0.
+/// a thousandth of the smallest detail. Along an axis where the value jumps it is 0. With a noise generator
+/// of POV-Ray's it is what POV-Ray bends surfaces by, less the amount: differences to four places 0.02 away
+/// in the pattern, turned and scaled with it but not warped; for `bumps`, `dents`, `quilted`, `ripples`,
+/// `waves` and `wrinkles` without a map vectors of their own; of entries that are textures a mixture of their
+/// slopes.
 Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p, const PatternTextures* others = nullptr);
 
 /// Calls f(index) for each texture that a pattern, which may be const, shows a part of. Indices that are not

@@ -15,7 +15,11 @@ namespace oktett {
 namespace {
 
 /// The random point of a cube of edge 1.
-Vec3d cell_point(std::int64_t x, std::int64_t y, std::int64_t z) {
+Vec3d cell_point(std::int64_t x, std::int64_t y, std::int64_t z, NoiseGenerator generator) {
+  if (generator != NoiseGenerator::own)
+    return {static_cast<double>(x) + povray_cell_number(x, y, z, 0),
+            static_cast<double>(y) + povray_cell_number(x, y, z, 1),
+            static_cast<double>(z) + povray_cell_number(x, y, z, 2)};
   const std::uint64_t a = lattice_bits(x, y, z), b = mix_bits(a + kGoldenBits), c = mix_bits(b + kGoldenBits);
   return {static_cast<double>(x) + unit_of(a), static_cast<double>(y) + unit_of(b),
           static_cast<double>(z) + unit_of(c)};
@@ -59,7 +63,7 @@ struct NearestPoints {
   }
 };
 
-NearestPoints nearest_points(const Metric& metric, const Vec3d& p) {
+NearestPoints nearest_points(const Metric& metric, const Vec3d& p, NoiseGenerator generator) {
   const std::int64_t cell[3] = {cell_of(p.x), cell_of(p.y), cell_of(p.z)};
   NearestPoints nearest;
   // The cubes around the place first, then those around these, unless they are too far away.
@@ -77,7 +81,7 @@ NearestPoints nearest_points(const Metric& metric, const Vec3d& p) {
             }
             if (metric.sum(gap) >= nearest.sums[2]) continue;
           }
-          const Vec3d point = cell_point(cell[0] + i, cell[1] + j, cell[2] + k);
+          const Vec3d point = cell_point(cell[0] + i, cell[1] + j, cell[2] + k, generator);
           nearest.add(metric.sum(p - point), point);
         }
   return nearest;
@@ -103,14 +107,21 @@ double raw_value(const BrickPattern& b, const Vec3d& p, const PatternFrame&) {
   return x >= b.brick.x - b.mortar || z >= b.brick.z - b.mortar ? 0 : 1;
 }
 
-double raw_value(const CellsPattern&, const Vec3d& p, const PatternFrame&) {
+double raw_value(const BumpsPattern&, const Vec3d& p, const PatternFrame& frame) {
+  return unit_noise(p, frame.turbulence.generator);
+}
+
+double raw_value(const CellsPattern&, const Vec3d& p, const PatternFrame& frame) {
+  if (frame.turbulence.generator != NoiseGenerator::own)
+    return povray_cell_number(cell_of(p.x), cell_of(p.y), cell_of(p.z), 0);
   return unit_of(lattice_bits(cell_of(p.x), cell_of(p.y), cell_of(p.z)));
 }
 
-double raw_value(const CracklePattern& c, const Vec3d& p, const PatternFrame&) {
+double raw_value(const CracklePattern& c, const Vec3d& p, const PatternFrame& frame) {
+  const NoiseGenerator generator = frame.turbulence.generator;
   const Metric metric(c.metric);
-  const NearestPoints nearest = nearest_points(metric, p);
-  if (c.solid) return unit_noise(nearest.first);
+  const NearestPoints nearest = nearest_points(metric, p, generator);
+  if (c.solid) return unit_noise(nearest.first, generator);
   const double offset = metric.term(c.offset);
   double sum = 0;
   for (int k = 0; k < 3; ++k)
@@ -124,16 +135,22 @@ double raw_value(const CubicPattern&, const Vec3d& p, const PatternFrame&) {
   return p[axis] < 0 ? axis + 3 : axis;
 }
 
-double raw_value(const DentsPattern&, const Vec3d& p, const PatternFrame&) {
-  const double noise = unit_noise(p);
+double raw_value(const DentsPattern&, const Vec3d& p, const PatternFrame& frame) {
+  const double noise = unit_noise(p, frame.turbulence.generator);
   return noise * noise * noise;
 }
 
-double raw_value(const GranitePattern&, const Vec3d& p, const PatternFrame&) {
+double raw_value(const GranitePattern&, const Vec3d& p, const PatternFrame& frame) {
   double sum = 0, scale = 4, weight = 1;
+  const NoiseGenerator generator = frame.turbulence.generator;
+  // What one octave may be at most; of POV-Ray's first generator noise itself counts, which is half as much.
+  const double steep = generator == NoiseGenerator::povray_1 ? 0.5 : 1;
+  const double most = generator == NoiseGenerator::own ? kInfinity : 0.5;
   for_each_octave<1>(
-      6, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
-      [&](const double(&noise)[1]) { sum += weight * std::abs(noise[0]), weight *= 0.5; });
+      6, generator, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
+      [&](const double(&noise)[1]) {
+        sum += weight * std::min(steep * std::abs(noise[0]), most), weight *= 0.5;
+      });
   return std::min(sum, 1.0);
 }
 
@@ -153,11 +170,13 @@ double raw_value(const HexagonPattern&, const Vec3d& p, const PatternFrame&) {
   return number - 3 * std::floor(number / 3);
 }
 
-double raw_value(const WrinklesPattern&, const Vec3d& p, const PatternFrame&) {
+double raw_value(const WrinklesPattern&, const Vec3d& p, const PatternFrame& frame) {
   double sum = 0, scale = 1, weight = 0.5;
+  const NoiseGenerator generator = frame.turbulence.generator;
+  const double steep = generator == NoiseGenerator::povray_1 ? 0.5 : 1;
   for_each_octave<1>(
-      10, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
-      [&](const double(&noise)[1]) { sum += weight * steep_noise(noise[0]), weight *= 0.5; });
+      10, generator, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= 2; },
+      [&](const double(&noise)[1]) { sum += weight * steep_noise(steep * noise[0]), weight *= 0.5; });
   return sum;
 }
 

@@ -88,6 +88,9 @@ struct CracklePattern {
   bool operator==(const CracklePattern&) const = default;
 };
 
+/// The value is noise; surfaces are bent by noise of each axis.
+OKTETT_PLAIN_PATTERN(BumpsPattern, "bumps", "noise of one size");
+
 /// 0 to 5, by the axis to which a place is nearest.
 struct CubicPattern {
   static constexpr ShapeInfo kShapeInfo{

@@ -10,7 +10,11 @@ void vector_noise_places(const Vec3d& p, Vec3d (&places)[3]) {
   places[2] = p + Vec3d{-31.29, 77.53, -43.83};
 }
 
-void noise_at(const Vec3d* places, std::size_t count, double* values) {
+void noise_at(const Vec3d* places, std::size_t count, NoiseGenerator generator, double* values) {
+  if (generator != NoiseGenerator::own) {
+    for (std::size_t i = 0; i < count; ++i) values[i] = 2 * povray_noise(places[i], generator) - 1;
+    return;
+  }
   static const NoiseAtPlaces code = noise_at_places(default_isa());
   code(places, count, values);
 }

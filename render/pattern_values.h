@@ -1,12 +1,11 @@
 #pragma once
 /// \file The values of patterns of pattern_kinds.h at places, before a wave brings them into one period.
 
-#include "render/pattern_kinds.h"
-#include "render/warp.h"
+#include <optional>
+
+#include "render/pattern.h"
 
 namespace oktett {
-
-class PatternTextures;
 
 /// What the value of a pattern depends on beside its own numbers.
 struct PatternFrame {
@@ -37,8 +36,12 @@ double raw_value(const TexturePattern& t, const Vec3d& p, const PatternFrame&);
 double raw_value(const VoxelPattern& v, const Vec3d& p, const PatternFrame&);
 double raw_value(const WavesPattern& w, const Vec3d& p, const PatternFrame&);
 
+/// A Bezier curve of the distance from the middle of a cushion, which runs to 1 at 1.
+double cushion_curve(const QuiltedPattern& q, double distance);
+
 // Of cells and of noise: pattern_cells.cpp. Of patterns with kValues the number of the value.
 double raw_value(const AgatePattern& a, const Vec3d& p, const PatternFrame&);
+double raw_value(const BumpsPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const BrickPattern& b, const Vec3d& p, const PatternFrame&);
 double raw_value(const CellsPattern&, const Vec3d& p, const PatternFrame&);
 double raw_value(const CracklePattern& c, const Vec3d& p, const PatternFrame&);
@@ -50,5 +53,10 @@ double raw_value(const WrinklesPattern&, const Vec3d& p, const PatternFrame&);
 
 // pattern_fractal.cpp.
 double raw_value(const FractalPattern& f, const Vec3d& p, const PatternFrame&);
+
+// pattern_bends.cpp.
+/// What POV-Ray adds to the normals of surfaces for these patterns in place of their slope; nothing for all
+/// others.
+std::optional<Vec3d> povray_bend(const Pattern& pattern, const Vec3d& p, const PatternFrame& frame);
 
 }  // namespace oktett

@@ -225,10 +225,14 @@ Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction
 
 /// The same for heights that are given in space and have the gradient `slope`: the surface where F = 0
 /// becomes that where F = height |grad F|, so its normal loses the part of the gradient that runs along the
-/// surface (Perlin 1985). All in the object's space, which `to_world` leads out of.
-Vec3f bumped_by_slope(const Vec3d& slope, const Affine& to_world, const Affine& to_object, const Vec3f& n) {
+/// surface (Perlin 1985). All in the object's space, which `to_world` leads out of. `along_too`: it loses all
+/// of the gradient, as in POV-Ray.
+Vec3f bumped_by_slope(const Vec3d& slope, const Affine& to_world, const Affine& to_object, const Vec3f& n,
+                      bool along_too = false) {
   const Vec3d own = normalize(to_world.normal_by_inverse(Vec3d(n)));
-  return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(own - (slope - own * dot(slope, own))))), n);
+  return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(
+                         own - (along_too ? slope : slope - own * dot(slope, own))))),
+                     n);
 }
 
 /// The axes of a normal map on a surface; of any length.
@@ -376,11 +380,14 @@ class TexturedHit {
     Vec3f n = s_.shading_normal;
     const PatternTexture* const pattern = pattern_in(context_.texture_list, m_.bump_texture);
     if (pattern != nullptr && !pattern->by_uv) {
-      const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
+      double scale = double{m_.bump_scale} * double{context_.texture_list[m_.bump_texture].gain};
+      // In POV-Ray the normal on the side of the viewer is bent.
+      const bool as_povray = pattern->turbulence.generator != NoiseGenerator::own;
+      if (as_povray && dot(Vec3d(s_.geometric_normal), place.to_viewer) < 0) scale = -scale;
       const Textures textures{context_.texture_list, context_.textures};
       const NestedTextures nested(textures, place, 1);
-      n = bumped_by_slope(pattern_slope(*pattern, place.position, &nested) * double{scale}, to_world_,
-                          to_object_, n);
+      n = bumped_by_slope(pattern_slope(*pattern, place.position, &nested) * scale, to_world_, to_object_, n,
+                          as_povray);
     } else if (const Texture* attribute = attribute_in(context_.texture_list, m_.bump_texture)) {
       const double scale = double{m_.bump_scale} * double{attribute->gain};
       n = bumped_by_slope(attribute_slope(*attribute, place.on_mesh) * scale, to_world_, to_object_, n);

@@ -58,6 +58,13 @@ Color NestedTextures::image(std::uint32_t texture, const Vec2f& uv) const {
   return color_at(textures_, texture, place, depth_);
 }
 
+Vec3d NestedTextures::slope(std::uint32_t texture, const Vec3d& position) const {
+  const PatternTexture* const pattern = pattern_in(textures_.list, texture);
+  if (depth_ > kMostNestedTextures || pattern == nullptr || pattern->by_uv) return {0, 0, 0};
+  const NestedTextures nested(textures_, place_, depth_ + 1);
+  return pattern_slope(*pattern, position, &nested) * double{textures_.list[texture].gain};
+}
+
 Color NestedTextures::color_at(const Textures& textures, std::uint32_t texture, const TexturePlace& place,
                                unsigned depth) {
   if (const PatternTexture* pattern = pattern_in(textures.list, texture)) {

@@ -66,6 +66,7 @@ class NestedTextures final : public PatternTextures {
 
   Color color(std::uint32_t texture, const Vec3d& position) const override;
   Color image(std::uint32_t texture, const Vec2f& uv) const override;
+  Vec3d slope(std::uint32_t texture, const Vec3d& position) const override;
   Vec3d normal() const override { return place_.normal; }
   Vec3d to_viewer() const override { return place_.to_viewer; }
 

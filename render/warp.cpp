@@ -66,6 +66,13 @@ Vec3d warped_by(const MappingWarp& m, const Vec3d& p) {
 
 Vec3d warped_by(const TransformWarp& t, const Vec3d& p) { return t.to_pattern.point(p); }
 
+/// How octaves follow each other in POV-Ray, which keeps these numbers as floats.
+struct OctaveSteps {
+  explicit OctaveSteps(const PatternTurbulence& t)
+      : lambda(static_cast<float>(t.lambda)), omega(static_cast<float>(t.omega)) {}
+  double lambda, omega;
+};
+
 /// What is multiplied by the frequency and moved by the phase.
 double phase_of(const Wave& wave, double value) { return value * wave.frequency + wave.phase; }
 
@@ -75,8 +82,14 @@ Vec3d displaced(const PatternTurbulence& t, const Vec3d& p) {
   if (t.amount == Vec3d{0, 0, 0}) return p;
   Vec3d sum{0, 0, 0};
   double scale = 1, weight = 1;
+  if (t.generator != NoiseGenerator::own) {
+    const OctaveSteps steps(t);
+    for (std::uint32_t i = 0; i < t.octaves; ++i, scale *= steps.lambda, weight *= steps.omega)
+      sum += povray_noise_vector(p * scale) * weight;
+    return p + sum * t.amount;
+  }
   for_each_octave<3>(
-      t.octaves,
+      t.octaves, t.generator,
       [&](Vec3d(&places)[3]) {
         vector_noise_places(p * scale, places);
         scale *= t.lambda;
@@ -90,8 +103,19 @@ Vec3d displaced(const PatternTurbulence& t, const Vec3d& p) {
 
 double value_turbulence(const PatternTurbulence& t, const Vec3d& p) {
   double sum = 0, scale = 1, weight = 1;
+  if (t.generator != NoiseGenerator::own) {
+    const OctaveSteps steps(t);
+    for (std::uint32_t i = 0; i < t.octaves; ++i, scale *= steps.lambda, weight *= steps.omega) {
+      const double noise = povray_noise(p * scale, t.generator);
+      // Of the first octave alone what is beyond [0, 1] is cut off.
+      sum += weight * (t.generator == NoiseGenerator::povray_1 ? noise
+                       : i == 0                                ? steep_noise(2 * noise - 1)
+                                                               : 2 * noise - 0.5);
+    }
+    return sum;
+  }
   for_each_octave<1>(
-      t.octaves, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= t.lambda; },
+      t.octaves, t.generator, [&](Vec3d(&place)[1]) { place[0] = p * scale, scale *= t.lambda; },
       [&](const double(&noise)[1]) { sum += steep_noise(noise[0]) * weight, weight *= t.omega; });
   return sum;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/description.h"
+#include "core/noise_generator.h"
 #include "core/transform.h"
 #include "core/vec3.h"
 
@@ -18,11 +19,22 @@ struct PatternTurbulence {
   std::uint32_t octaves = 6;
   double lambda = 2;
   double omega = 0.5;
+  NoiseGenerator generator{};  ///< of the pattern that it is part of
 
   void describe(auto& p) {
     p.field("octaves", octaves, whole(1, 16), "how many sizes of details there are");
     p.field("lambda", lambda, Range{0.01, 100}, "how much smaller each size is than the one before");
     p.field("omega", omega, Range{0, 10}, "how strong it is, relative to the one before");
+  }
+  void describe_generator(auto& p) {
+    p.choice(
+        "noise_generator", generator,
+        {{"own", NoiseGenerator::own},
+         {"povray_1", NoiseGenerator::povray_1},
+         {"povray_2", NoiseGenerator::povray_2},
+         {"povray_3", NoiseGenerator::povray_3}},
+        "the noise that all of it is made of: Perlin's of 2002, or that of POV-Ray of this number, with its "
+        "values");
   }
   bool operator==(const PatternTurbulence&) const = default;
 };

@@ -620,7 +620,9 @@ void Interpreter::set_version() {
     if (peek().kind == Token::Kind::word) take();
     parse_float();
   } else {
-    version_ = parse_float(), version_stated_ = true;
+    version_ = parse_float();
+    // Objects may be asked before the end.
+    document_.version = version_;
   }
   hold_ = outer;
   if (!pending_.empty() && pending_.back().kind == Token::Kind::held) pending_.pop_back();

@@ -122,7 +122,7 @@ struct Spline {
 struct Document {
   std::vector<std::string> files;  ///< paths; the first is the scene
   std::vector<MacroCall> calls;
-  double version = 0;  ///< of `#version`, such as 3.7; 3.62 if none is stated
+  double version = 3.62;  ///< of the last `#version` so far, such as 3.7; 3.62 if none is stated
   /// In the order of the file: objects, `camera`, `light_source`, `global_settings`, `background`, `fog`, ...
   std::vector<Element> statements;
   std::vector<Warning> warnings;  ///< and what #warning said

@@ -175,9 +175,10 @@ const Internal* find(std::uint32_t number) {
 
 }  // namespace
 
-std::optional<std::string> internal_text(std::uint32_t number, const std::vector<std::string>& operands) {
+std::optional<std::string> internal_text(std::uint32_t number, const std::vector<std::string>& operands,
+                                         NoiseGenerator generator) {
   if (std::optional<std::string> text = winding_text(number, operands)) return text;
-  if (std::optional<std::string> text = noise_text(number, operands)) return text;
+  if (std::optional<std::string> text = noise_text(number, operands, generator)) return text;
   const Internal* const known = find(number);
   if (known == nullptr || operands.size() < known->operands) return std::nullopt;
   if (!known->curve) return filled(known->text, operands);
@@ -200,7 +201,7 @@ std::optional<double> internal_value(std::uint32_t number, std::span<const doubl
     if (!std::isfinite(operand)) return known ? std::optional(std::nan("")) : std::nullopt;
     texts.push_back(fmt::format("{}", operand));
   }
-  const std::optional<std::string> text = internal_text(number, texts);
+  const std::optional<std::string> text = internal_text(number, texts, NoiseGenerator::povray_2);
   if (!text) return std::nullopt;
   double value = std::nan("");
   try {

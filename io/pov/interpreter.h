@@ -246,7 +246,6 @@ class Interpreter {
   std::shared_ptr<ArrayCount> array_count_ = std::make_shared<ArrayCount>();
   BlockPtr default_texture_;
   double version_ = 3.7;         ///< what `version` is
-  bool version_stated_ = false;  ///< else the scene is one of 3.62
   std::uint32_t nesting_ = 0, includes_ = 0, macro_depth_ = 0;
   std::uint64_t steps_ = 0, values_ = 0, bytes_ = 0;
 };

@@ -52,7 +52,6 @@ void Interpreter::run(const std::string& path) {
     }
     parse_element(document_.statements, depth);
   }
-  document_.version = version_stated_ ? version_ : 3.62;
 }
 
 void Interpreter::fail(const Place& where, const std::string& message) const {

@@ -25,7 +25,7 @@ std::string written_out(const FunctionTape& tape, std::span<const std::string_vi
   for (const TapeStep& s : tape.steps) {
     // Copies, since a result may overwrite what it is made of.
     const std::string a = r[s.a], b = r[s.b];
-    const std::string third = s.op == TapeOp::noise ? r[static_cast<std::size_t>(s.n)] : "";
+    const std::string third = has_third(s.op) ? r[static_cast<std::size_t>(s.n)] : "";
     r[s.out] =
         fmt::format(fmt::runtime(kPatterns[static_cast<int>(s.op)]), fmt::arg("a", a), fmt::arg("b", b),
                     fmt::arg("c", number_text(s.c)), fmt::arg("n", s.n), fmt::arg("third", third));

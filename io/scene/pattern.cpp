@@ -289,6 +289,7 @@ struct PatternKeys {
                "between turbulence and transform, the first nearest to the pattern");
     p.optional("transform", InverseOf{texture.to_pattern},
                "from the space of the pattern to that of the object");
+    texture.turbulence.describe_generator(p);
     p.field("by_uv", texture.by_uv, "is looked up at [u, v, 0] of the surface instead of the place in space");
   }
 
@@ -324,6 +325,7 @@ std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& n
     read_described(load, node, P::kShapeInfo.key, keys);
     texture = std::move(keys.texture);
     texture->pattern = keys.pattern;
+    texture->set_noise_generator(texture->turbulence.generator);
   });
   return texture;
 }

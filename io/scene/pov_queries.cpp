@@ -9,12 +9,12 @@
 
 #include "accel/accel.h"
 #include "accel/point_query.h"
+#include "core/povray_noise.h"
 #include "io/pov/internal_functions.h"
 #include "io/pov/noise_functions.h"
 #include "io/pov/translate/translate.h"
 #include "io/scene/readers.h"
 #include "render/geometry.h"
-#include "render/pattern_noise.h"
 #include "render/shading_point.h"
 #include "render/warp.h"
 
@@ -330,17 +330,26 @@ std::optional<double> PovQueries::pattern(const BlockPointer& block, const Point
   return has_three ? 2 * (*color)[0] : (*color)[0];
 }
 
+NoiseGenerator PovQueries::noise_generator() {
+  if (document_->statements.size() != statements_seen_ || document_->version != version_seen_) {
+    statements_seen_ = document_->statements.size(), version_seen_ = document_->version;
+    noise_generator_ = pov::noise_generator_of(*document_);
+  }
+  return noise_generator_;
+}
+
 std::optional<double> PovQueries::internal(std::uint32_t number, std::span<const double> arguments) {
   steps_ += 20;
   if ((number == pov::kNoiseFunction || number == pov::kNoiseGeneratorFunction) && arguments.size() >= 3)
-    return unit_noise({arguments[0], arguments[1], arguments[2]});
+    return povray_noise({arguments[0], arguments[1], arguments[2]},
+                        arguments.size() > 3 ? pov::noise_generator_named(arguments[3]) : noise_generator());
   return pov::internal_value(number, arguments);
 }
 
 std::optional<pov::ObjectQueries::Point> PovQueries::turbulence(double lambda, double omega, int octaves,
                                                                 const Point& point) {
   PatternTurbulence turbulence;
-  turbulence.amount = {1, 1, 1};
+  turbulence.amount = {1, 1, 1}, turbulence.generator = NoiseGenerator::povray_2;
   turbulence.octaves = static_cast<std::uint32_t>(std::clamp(octaves, 1, 10));
   turbulence.lambda = lambda, turbulence.omega = omega;
   steps_ += 10 * turbulence.octaves;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/noise_generator.h"
 #include "io/pov/read_pov.h"
 
 namespace oktett {
@@ -53,7 +54,13 @@ class PovQueries final : public pov::ObjectQueries {
   void at_place(const Asked& asked, const Make& make);
   void warn(const std::vector<Warning>& warnings);
 
+  /// The one that the statements read so far ask for.
+  NoiseGenerator noise_generator();
+
   const pov::Document* document_ = nullptr;
+  std::size_t statements_seen_ = static_cast<std::size_t>(-1);  ///< of which `noise_generator_` is
+  double version_seen_ = 0;
+  NoiseGenerator noise_generator_{};
   std::list<Asked> asked_;  ///< the last one that was asked first
   std::unordered_map<const pov::Block*, std::list<Asked>::iterator> places_;
   std::uint64_t weight_ = 0;  ///< of all that is kept

@@ -54,6 +54,7 @@ constexpr Function kFunctions[] = {
     {"sign", ExpressionOp::sign, sign_of},
     {"hypot", ExpressionOp::hypot, precise::hypot},
     {"noise", ExpressionOp::noise, nullptr},
+    {"povray_noise", ExpressionOp::povray_noise, nullptr},
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -223,7 +224,7 @@ class Parser {
 int operand_count(ExpressionOp op) {
   using enum ExpressionOp;
   if (op == constant || op == variable) return 0;
-  if (op == noise) return 3;
+  if (op == noise || op == povray_noise) return 3;
   const auto pairs = {add, subtract, multiply, divide, power, atan2, min, max, hypot};
   return std::find(pairs.begin(), pairs.end(), op) != pairs.end() ? 2 : 1;
 }
@@ -236,6 +237,8 @@ double apply(ExpressionOp op, double a, double b, double c) {
   switch (op) {
     case ExpressionOp::noise:
       return gradient_noise({a, b, c});
+    case ExpressionOp::povray_noise:
+      return noise_value({a, b, c}, NoiseKind::povray);
     case ExpressionOp::negate:
       return -a;
     case ExpressionOp::add:

@@ -15,7 +15,7 @@
 namespace oktett {
 
 /// Longest text that is parsed, in bytes.
-inline constexpr std::size_t kMaxExpressionLength = 16384;
+inline constexpr std::size_t kMaxExpressionLength = 65536;
 /// Deepest nesting of parentheses, calls, signs and right-hand sides of `^`; one deeper is an error.
 inline constexpr int kMaxExpressionDepth = 200;
 
@@ -50,7 +50,8 @@ enum class ExpressionOp : std::uint8_t {
   round,  ///< halves away from zero
   sign,   ///< -1, 0 or 1; NaN for NaN
   hypot,
-  noise,  ///< gradient_noise at (a, b, c), see core/noise.h
+  noise,         ///< gradient_noise at (a, b, c), see core/noise.h
+  povray_noise,  ///< the other noise of core/noise.h there
 };
 
 struct ExpressionNode {
@@ -75,10 +76,10 @@ int operand_count(ExpressionOp op);
 
 /// Parses `text`: numbers, + - * / ^, parentheses, the constants pi and e, the names in `variables`, and the
 /// functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round sign
-/// hypot noise (angles in radians; noise takes three arguments, min and max take two or more arguments). `^`
-/// binds tightest and to the right: -2^2 = -4, 2^3^2 = 512, and its exponent may have a sign. A variable
-/// hides a constant of the same name. Throws Error whose `where().column` counts bytes in `text` from 1; its
-/// file and line are unset.
+/// hypot noise povray_noise (angles in radians; noises take three arguments, min and max take two or more
+/// arguments). `^` binds tightest and to the right: -2^2 = -4, 2^3^2 = 512, and its exponent may have a sign.
+/// A variable hides a constant of the same name. Throws Error whose `where().column` counts bytes in `text`
+/// from 1; its file and line are unset.
 Expression parse_expression(std::string_view text, std::span<const std::string_view> variables = {});
 
 /// The value for `values[i]` in place of variable i.

@@ -113,6 +113,7 @@ bool has_second(TapeOp op) {
     case TapeOp::min:
     case TapeOp::max:
     case TapeOp::noise:
+    case TapeOp::povray_noise:
       return true;
     default:
       return false;
@@ -134,7 +135,7 @@ TapeValues values_of(const FunctionTape& tape) {
     TapeValue value{s.op, kNoId, kNoId, s.n, s.c};
     if (s.op != TapeOp::constant) value.a = in[s.a];
     if (has_second(s.op)) value.b = in[s.b];
-    if (s.op == TapeOp::noise) value.third = in[static_cast<std::size_t>(s.n)], value.n = 0;
+    if (has_third(s.op)) value.third = in[static_cast<std::size_t>(s.n)], value.n = 0;
     const auto add = [&](TapeOp op, std::uint8_t out) {
       value.op = op, in[out] = static_cast<std::uint32_t>(values.list.size());
       values.list.push_back(value);
@@ -201,8 +202,10 @@ class Values {
       case ExpressionOp::hypot:
         return make(TapeOp::sqrt, place,
                     sum(place, make(TapeOp::square, place, a), make(TapeOp::square, place, b)));
-      case ExpressionOp::noise: {
-        const TapeValue value{TapeOp::noise, a, b, 0, 0, c};
+      case ExpressionOp::noise:
+      case ExpressionOp::povray_noise: {
+        const TapeValue value{
+            node.op == ExpressionOp::noise ? TapeOp::noise : TapeOp::povray_noise, a, b, 0, 0, c};
         return is_constant(a) && is_constant(b) && is_constant(c) ? fold(value, place) : find(value);
       }
       default:

@@ -276,10 +276,10 @@ OKTETT_NOINLINE Gradient<D, W, V> sign(const Gradient<D, W, V>& a) {
 }
 template <class D, Walls W, class V>
 OKTETT_NOINLINE Gradient<D, W, V> noise(const Gradient<D, W, V>& x, const Gradient<D, W, V>& y,
-                                        const Gradient<D, W, V>& z) {
+                                        const Gradient<D, W, V>& z, NoiseKind kind) {
   Gradient<D, W, V> r;
   Vec3<D> by;
-  noise_lanes::slope(x.v, y.v, z.v, r.v, by);
+  noise_lanes::slope(x.v, y.v, z.v, kind, r.v, by);
   r.d = add_lanes(add_lanes(scale_lanes(x.d, by.x), scale_lanes(y.d, by.y)), scale_lanes(z.d, by.z));
   return r;
 }

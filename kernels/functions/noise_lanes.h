@@ -1,5 +1,5 @@
 #pragma once
-/// \file Perlin's noise (core/noise.h) of numbers with gradients, intervals, and intervals with derivatives,
+/// \file The noises of core/noise.h, of numbers with gradients, intervals, and intervals with derivatives,
 /// in lanes. Each lane is computed by itself: hashing needs whole numbers of 64 bits.
 
 #include "core/lanes.h"
@@ -29,11 +29,11 @@ struct Table {
 
 /// The noise at points, and its gradients.
 template <class D>
-OKTETT_NOINLINE void slope(const D& x, const D& y, const D& z, D& value, Vec3<D>& gradient) {
+OKTETT_NOINLINE void slope(const D& x, const D& y, const D& z, NoiseKind kind, D& value, Vec3<D>& gradient) {
   Table<D, 4> t;
   x.store(t.at[0]), y.store(t.at[1]), z.store(t.at[2]);
   for (int lane = 0; lane < D::kWidth; ++lane) {
-    const NoiseSlope s = noise_slope(t.vector(0, lane));
+    const NoiseSlope s = noise_slope(t.vector(0, lane), kind);
     t.put(0, lane, s.gradient), t.at[3][lane] = s.value;
   }
   value = t.column(3), gradient = t.columns(0);
@@ -41,13 +41,13 @@ OKTETT_NOINLINE void slope(const D& x, const D& y, const D& z, D& value, Vec3<D>
 
 /// The noise over boxes, and its derivatives. Entire or void where a side of the box is.
 template <class D>
-OKTETT_NOINLINE void range(const Interval<D>& x, const Interval<D>& y, const Interval<D>& z,
+OKTETT_NOINLINE void range(const Interval<D>& x, const Interval<D>& y, const Interval<D>& z, NoiseKind kind,
                            Interval<D>& value, Interval<D> (&gradient)[3]) {
   Table<D, 8> t;
   x.lo.store(t.at[0]), y.lo.store(t.at[1]), z.lo.store(t.at[2]);
   x.hi.store(t.at[3]), y.hi.store(t.at[4]), z.hi.store(t.at[5]);
   for (int lane = 0; lane < D::kWidth; ++lane) {
-    const NoiseRange r = noise_range(t.vector(0, lane), t.vector(3, lane));
+    const NoiseRange r = noise_range(t.vector(0, lane), t.vector(3, lane), kind);
     t.put(0, lane, r.slope_lo), t.put(3, lane, r.slope_hi);
     t.at[6][lane] = r.lo, t.at[7][lane] = r.hi;
   }
@@ -59,16 +59,17 @@ OKTETT_NOINLINE void range(const Interval<D>& x, const Interval<D>& y, const Int
 }  // namespace noise_lanes
 
 template <class D>
-OKTETT_INLINE Interval<D> noise(const Interval<D>& x, const Interval<D>& y, const Interval<D>& z) {
+OKTETT_INLINE Interval<D> noise(const Interval<D>& x, const Interval<D>& y, const Interval<D>& z,
+                                NoiseKind kind) {
   Interval<D> value, gradient[3];
-  noise_lanes::range(x, y, z, value, gradient);
+  noise_lanes::range(x, y, z, kind, value, gradient);
   return value;
 }
 template <class D>
 OKTETT_NOINLINE Dual<Interval<D>> noise(const Dual<Interval<D>>& x, const Dual<Interval<D>>& y,
-                                        const Dual<Interval<D>>& z) {
+                                        const Dual<Interval<D>>& z, NoiseKind kind) {
   Interval<D> value, gradient[3];
-  noise_lanes::range(x.v, y.v, z.v, value, gradient);
+  noise_lanes::range(x.v, y.v, z.v, kind, value, gradient);
   return {value, (gradient[0] * x.d + gradient[1] * y.d) + gradient[2] * z.d};
 }
 

@@ -19,7 +19,7 @@ inline constexpr int kMaxTapePower = 256;
 /// What a step computes from the registers a and b and the numbers c and n: OP(name, text, step) for each
 /// operation. `text` is the expression as it is written, `step` the statements that compute it.
 /// Powers with a real exponent are defined for a >= 0. `sin_cos` puts the cosine into the
-/// register b. Of `noise`, n is the register of the third operand.
+/// register b. Of noises, n is the register of the third operand.
 #define OKTETT_TAPE_OPS(OP)                                                                        \
   OP(constant, "({c})", set(out, s.c))                                                             \
   OP(negate, "(-{a})", out = -a)                                                                   \
@@ -50,7 +50,8 @@ inline constexpr int kMaxTapePower = 256;
   OP(ceil, "ceil({a})", out = ceil(a))                                                             \
   OP(round, "round({a})", out = round(a))                                                          \
   OP(sign, "sign({a})", out = sign(a))                                                             \
-  OP(noise, "noise({a}, {b}, {third})", out = noise(a, b, r[s.n]))
+  OP(noise, "noise({a}, {b}, {third})", out = noise(a, b, r[s.n], NoiseKind::gradient))            \
+  OP(povray_noise, "povray_noise({a}, {b}, {third})", out = noise(a, b, r[s.n], NoiseKind::povray))
 enum class TapeOp : std::uint8_t {
 #define OP(name, text, step) name,
   OKTETT_TAPE_OPS(OP)
@@ -65,11 +66,14 @@ struct TapeStep {
   double c = 0;
 };
 
+/// Whether an operation has three operands.
+constexpr bool has_third(TapeOp op) { return op == TapeOp::noise || op == TapeOp::povray_noise; }
+
 /// Whether the step reads the register.
 inline bool reads(const TapeStep& step, std::uint8_t reg) {
   if (step.op == TapeOp::constant) return false;
   return step.a == reg || (step.b == reg && step.op != TapeOp::sin_cos) ||
-         (step.op == TapeOp::noise && step.n == reg);
+         (has_third(step.op) && step.n == reg);
 }
 
 /// A function as its steps in order. compile_function makes one.
@@ -86,7 +90,8 @@ inline constexpr std::string_view kSurfaceVariables[] = {"u", "v"};
 
 /// Compiles a text: numbers, + - * / ^, parentheses, up to three variables, the constants pi and e, and
 /// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
-/// sign hypot (angles in radians) and noise(a, b, c), the gradient noise of patterns. Constants are rounded
+/// sign hypot (angles in radians) and noise(a, b, c) and povray_noise(a, b, c), the
+/// noises of core/noise.h. Constants are rounded
 /// to double. a^b, where b is no constant, is exp(b log a); it and powers with an exponent that is not whole,
 /// or greater than kMaxTapePower, are defined for a >= 0 only.
 ///

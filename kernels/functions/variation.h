@@ -347,12 +347,14 @@ OKTETT_NOINLINE Variation<D> sign(const Variation<D>& a) {
 }
 
 template <class D>
-OKTETT_NOINLINE Variation<D> noise(const Variation<D>& x, const Variation<D>& y, const Variation<D>& z) {
+OKTETT_NOINLINE Variation<D> noise(const Variation<D>& x, const Variation<D>& y, const Variation<D>& z,
+                                   NoiseKind kind) {
+  const NoiseBounds most = bounds_of(kind);
   const Variation<D>* const of[3] = {&x, &y, &z};
   Interval<D> range[3], around;
   Variation<D> r = variation::constant(D(0.0));
-  noise_lanes::range(x.v, y.v, z.v, r.v, range);
-  noise_lanes::range(variation::wide(x), variation::wide(y), variation::wide(z), around, range);
+  noise_lanes::range(x.v, y.v, z.v, kind, r.v, range);
+  noise_lanes::range(variation::wide(x), variation::wide(y), variation::wide(z), kind, around, range);
   r.error = D(kNoiseError);
   for (int k = 0; k < 3; ++k) {
     const Variation<D>& a = *of[k];
@@ -361,11 +363,11 @@ OKTETT_NOINLINE Variation<D> noise(const Variation<D>& x, const Variation<D>& y,
     r.g = add_lanes(r.g, scale_lanes(a.g, slope));
     // The derivatives change with the errors of all three operands.
     D wrong(kNoiseSlopeError);
-    for (int j = 0; j < 3; ++j) wrong = wrong + D(j == k ? kMostNoiseBend : kMostNoiseTwist) * of[j]->error;
+    for (int j = 0; j < 3; ++j) wrong = wrong + D(j == k ? most.bend : most.twist) * of[j]->error;
     r.slope_error = r.slope_error + slope * (a.slope_error + D(variation::kSlope) * sum) + wrong * sum;
     for (int i = 0; i < 6; ++i) r.h[i] = r.h[i] + slope * a.h[i];
-    variation::add_products(D(0.5 * kMostNoiseBend), a.g, a.g, r.h);
-    for (int j = 0; j < k; ++j) variation::add_products(D(kMostNoiseTwist), a.g, of[j]->g, r.h);
+    variation::add_products(D(0.5 * most.bend), a.g, a.g, r.h);
+    for (int j = 0; j < k; ++j) variation::add_products(D(most.twist), a.g, of[j]->g, r.h);
     r.falls = r.falls + (a.falls + a.rises);
     r.doubt = r.doubt + a.doubt + (slope - slope);
   }

@@ -54,7 +54,8 @@ TEST_F(PovAtmosphere, FogsAreFogs) {
       "[0, 0, 0]}]");
   EXPECT_EQ(section("fog { rgb 1 }", "fog"), "none");
   EXPECT_EQ(section("fog { distance 1 turbulence <1, 2, 3> turb_depth 0.3 lambda 3 octaves 40 }", "fog"),
-            "[{distance: 1, color: [0, 0, 0], turbulence: [1, 2, 3], turbulence_depth: 0.3, octaves: 16, "
+            "[{distance: 1, color: [0, 0, 0], turbulence: [1, 2, 3], noise_generator: povray_2, "
+            "turbulence_depth: 0.3, octaves: 16, "
             "lambda: 3}]");
   EXPECT_EQ(warnings("fog { distance 1 turbulence 0.5 turb_depth 0.3 }"), "");
 }

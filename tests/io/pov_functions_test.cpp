@@ -77,10 +77,13 @@ TEST(PovFunctions, NoiseInFunctions) {
                ? found.substr(before.size(), end - before.size())
                : "no function: " + found;
   };
-  EXPECT_EQ(text("internal(76)", "F(2*x, y, z)"), "(0.5 + 0.5 * noise(((2 * x)), (y), (z)))");
+  EXPECT_EQ(text("internal(76)", "F(2*x, y, z)"),
+            "(max(0, min(1, 0.48985582 * (1.05242 + povray_noise(((2 * x)), (y), (z))))))");
+  EXPECT_EQ(text("internal(78)", "F(x, y, z, 1)"), "(max(0, min(1, 0.5 + povray_noise((x), (y), (z)))))");
   EXPECT_EQ(text("internal(78)", "F(x, y, z, 3)"), "(0.5 + 0.5 * noise((x), (y), (z)))");
   EXPECT_EQ(text("pattern { bozo scale <7, 1, 2> translate y }", "F(x, y, z)"),
-            "(0.5 + 0.5 * noise((0.14285714285714285 * x), (y + (-1)), (0.5 * z)))");
+            "(max(0, min(1, 0.48985582 * (1.05242 + povray_noise(((0.14285714285714285 * x)), ((y + (-1))), "
+            "((0.5 * z)))))))");
   EXPECT_EQ(text("pattern { planar rotate 90*z }", "F(x, y, z) - 0.5").substr(0, 16), "(max(0, 1 - abs(");
 
   // The values are those of the pattern, and those of a ridged multifractal.
@@ -89,10 +92,10 @@ TEST(PovFunctions, NoiseInFunctions) {
       "#version 3.7;\n#declare F = function { internal(59) } #declare G = function { pattern { granite scale "
       "3 } }"
       " #declare N = function { internal(76) } #declare W = function { pattern { wrinkles } }"
-      " isosurface { function { F(x, y, z, 0.7, 2.1, 2, 0.9, 1.3, 3) } contained_by { box { -9, 9 } } }"
+      " isosurface { function { F(x, y, z, 0.7, 2.1, 2, 0.9, 1.3, 2) } contained_by { box { -9, 9 } } }"
       " isosurface { function { G(x, y, z) } contained_by { box { -9, 9 } } }"
       " isosurface { function { W(x, y, z) } contained_by { box { -9, 9 } } }"
-      " sphere { <F(0.3, 0.4, 0.7, 0.7, 2.1, 2, 0.9, 1.3, 3), G(0.3, 0.4, 0.7), W(0.3, 0.4, 0.7)>, 1 }"
+      " sphere { <F(0.3, 0.4, 0.7, 0.7, 2.1, 2, 0.9, 1.3, 2), G(0.3, 0.4, 0.7), W(0.3, 0.4, 0.7)>, 1 }"
       " sphere { <N(0.3, 0.4, 0.7), N(0.63, 0.84, 1.47), 0>, 1 }"));
   ASSERT_EQ(scene.objects.size(), 5u);
   const auto value = [&](std::size_t i) {

@@ -268,11 +268,12 @@ TEST(PovScene, PatternsAreTextures) {
       color("gradient y color_map { [0 rgb 0] [0.5 rgb x] [1 rgb 1] } scale 2"),
       "{linear: {direction: [0, 1, 0], map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], transform: "
       "{scale: 2}}}");
-  EXPECT_EQ(color("spotted"), "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}");
+  EXPECT_EQ(color("spotted"),
+            "{noise: {octaves: 1, map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], noise_generator: povray_2}}");
   EXPECT_EQ(
       color("marble turbulence 0.5 octaves 3 color_map { [0, 0.5 rgb 0 rgb x] [0.5, 1 rgb x rgb 1] }"),
       "{layers: {map: [[0, [0, 0, 0]], [0.5, [1, 0, 0]], [0.5, [1, 0, 0]], [1, [1, 1, 1]]], turbulence: "
-      "{amount: 0.5, octaves: 3}}}");
+      "{amount: 0.5, octaves: 3}, noise_generator: povray_2}}");
   // Transforms before a warp are nearer to the pattern.
   EXPECT_EQ(
       color("onion scale 2 warp { repeat 3*x flip x } rotate y*30 frequency 2 phase 0.25 sine_wave"),
@@ -284,10 +285,10 @@ TEST(PovScene, PatternsAreTextures) {
   EXPECT_EQ(color("hexagon rgb 1"), "{hexagon: {colors: [[1, 1, 1], [0, 1, 0], [1, 0, 0]]}}");
   EXPECT_EQ(color("checker pigment { radial color_map { [0 rgb 0] [1 rgb x] } } rgb 1"),
             "{checker: {colors: [{angular: {map: [[0, [0, 0, 0]], [1, [1, 0, 0]]]}}, [1, 1, 1]]}}");
-  EXPECT_EQ(
-      color("planar pigment_map { [0 rgb 0] [1 granite scale 3] }"),
-      "{planar: {map: [[0, [0, 0, 0]], [1, {granite: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], transform: "
-      "{scale: 3}}}]]}}");
+  EXPECT_EQ(color("planar pigment_map { [0 rgb 0] [1 granite scale 3] }"),
+            "{planar: {map: [[0, [0, 0, 0]], [1, {granite: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]], "
+            "noise_generator: povray_2, transform: "
+            "{scale: 3}}}]]}}");
   EXPECT_EQ(color("average pigment_map { [1 rgb 1] [3 rgb x] }"),
             "{over: {color: [0.75, 0, 0], filter: 1, under: [0.25, 0.25, 0.25]}}");
   EXPECT_EQ(color("average pigment_map { [1 rgb 1] [1 planar] } scale 3"),
@@ -365,10 +366,10 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
             "{map: [[0, 0.6], "
             "[1, 0]]}}, transparency: 1, filter: {onion: {map: [[0, [0, 0, 0]], [1, [1, 1, 1]]]}}, ior: 1}}");
   // A normal: 2/15 of the slope of the pattern, in the size of the pattern.
-  EXPECT_EQ(
-      material("pigment { rgb 1 } normal { gradient x 0.75 scale 2 }"),
-      "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {linear: {direction: [1, 0, 0], "
-      "transform: {scale: 2}}, gain: 0.2}}}");
+  EXPECT_EQ(material("pigment { rgb 1 } normal { gradient x 0.75 scale 2 }"),
+            "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {linear: {direction: [1, 0, "
+            "0], noise_generator: povray_2, "
+            "transform: {scale: 2}}, gain: 0.2}}}");
   EXPECT_EQ(
       material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
       "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: {scale: 3}}}, ambient: 0.1, "
@@ -389,13 +390,16 @@ TEST(PovScene, MeansOfTexturesAndNormals) {
   EXPECT_EQ(
       material("pigment { rgb 1 } normal { average normal_map { [1 gradient x 0.75] [1 gradient y 0.75] } }"),
       "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {over: {color: {linear: "
-      "{direction: [0, 1, 0]}, gain: 0.05}, filter: 1, under: {linear: {direction: [1, 0, 0]}, gain: "
-      "0.05}}}}}");
+      "{direction: [0, 1, 0], noise_generator: povray_2}, gain: 0.05}, filter: 1, under: {linear: "
+      "{direction: [1, 0, 0], "
+      "noise_generator: povray_2}, gain: 0.05}, noise_generator: povray_2}}}}");
   // What is around normals makes them higher as it makes them wider.
   for (const char* const map : {"average normal_map { [1 gradient y 0.75] }",
                                 "gradient x normal_map { [0 gradient y 0.75] [1 gradient y 0.75] }"}) {
     const std::string text = material(std::string("pigment { rgb 1 } normal { ") + map + " scale 2 }");
-    EXPECT_NE(text.find("{linear: {direction: [0, 1, 0]}, gain: 0.2}"), std::string::npos) << text;
+    EXPECT_NE(text.find("{linear: {direction: [0, 1, 0], noise_generator: povray_2}, gain: 0.2}"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find("transform: {scale: 2}"), std::string::npos) << text;
   }
 }

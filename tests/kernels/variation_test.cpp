@@ -88,6 +88,8 @@ long double exact_value(const Expression& e, const long double (&p)[3]) {
           return std::hypot(a, b);
         case ExpressionOp::noise:
           return exact_noise(a, b, c);
+        case ExpressionOp::povray_noise:
+          return exact_povray_noise(a, b, c);
       }
       return 0;
     };

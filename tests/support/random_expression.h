@@ -38,7 +38,8 @@ inline std::string random_expression(std::mt19937& random, int depth) {
     case 10:
       return (random() % 2 ? "hypot(" : "atan2(") + a + "," + b + ")";
     case 11:
-      return "noise(" + a + "," + b + "," + random_expression(random, depth - 1) + ")";
+      return (a.size() % 2 != 0 ? "noise(" : "povray_noise(") + a + "," + b + "," +
+             random_expression(random, depth - 1) + ")";
     default:
       return "(" + a + ")^(" + b + ")";
   }

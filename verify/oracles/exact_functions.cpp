@@ -174,6 +174,20 @@ std::vector<Named> combined(CaseRandom& random) {
                 0.1L * std::abs(exact_noise(5 * p.x, 5 * p.y, 5 * p.z));
        },
        1.5},
+      // As POV-Ray's second generator has it, and rough ground of the sum itself.
+      {"x^2 + y^2 + z^2 - 0.7 - 0.8*max(0, min(1, 0.48985582*(1.05242 + povray_noise(" + text(3 * c) +
+           "*x, 3*y, 3*z))))",
+       [c](const Vec3l& p) {
+         const Real noise = 0.48985582L * (1.05242L + exact_povray_noise(3 * c * p.x, 3 * p.y, 3 * p.z));
+         return dot(p, p) - 0.7L - 0.8L * std::max(Real{0}, std::min(Real{1}, noise));
+       },
+       1.5},
+      {"y - 0.5*povray_noise(2*x, 0, 2*z) - 0.1*abs(povray_noise(5*x, 5*y, 5*z))",
+       [](const Vec3l& p) {
+         return p.y - 0.5L * exact_povray_noise(2 * p.x, 0, 2 * p.z) -
+                0.1L * std::abs(exact_povray_noise(5 * p.x, 5 * p.y, 5 * p.z));
+       },
+       1.5},
       general("abs(abs(abs(x) - 0.5) - 0.2) + abs(y) + abs(abs(z) - 0.4) - 0.3", 1,
               [](const auto& p) {
                 return abs(abs(abs(p.x) - 0.5L) - 0.2L) + abs(p.y) + abs(abs(p.z) - 0.4L) - 0.3L;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/pov/translate/look.h"
+#include "io/pov/translate/pattern_node.h"
 
 namespace oktett::pov {
 namespace {
@@ -149,6 +150,7 @@ Node fog_node(Context& context, const Block& block) {
     const auto put = [&](const char* key, double value, double usual, double least, double most) {
       if (value != usual) tree.put(node, key, tree.number(where, std::clamp(value, least, most)));
     };
+    tree.put(node, "noise_generator", tree.word(where, generator_name(context.noise_generator)));
     put("turbulence_depth", fog.turb_depth, 0.5, 0, 1);
     put("octaves", std::trunc(fog.octaves), 6, 1, 16), put("lambda", fog.lambda, 2, 0.01, 100);
     put("omega", fog.omega, 0.5, 0, 10);

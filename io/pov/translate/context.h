@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/noise_generator.h"
 #include "core/transform.h"
 #include "io/pov/document.h"
 #include "io/pov/translate/tree.h"
@@ -43,10 +44,11 @@ struct Context {
   std::string mesh_prefix;
   ObjectQueries* queries = nullptr;  ///< null: nobody can be asked for values of functions
   SceneGamma gamma;                  ///< in which light is computed
-  std::uint32_t samples = 0;         ///< per pixel, that the camera asks for; 0: it asks for none
-  bool has_fog = false;              ///< or media: it matters which solids are hollow
-  std::vector<Node> light_keys;      ///< what describes each of the lights
-  double film_scale = 1;             ///< of the thickness of films
+  NoiseGenerator noise_generator = NoiseGenerator::povray_2;  ///< of patterns that choose none
+  std::uint32_t samples = 0;     ///< per pixel, that the camera asks for; 0: it asks for none
+  bool has_fog = false;          ///< or media: it matters which solids are hollow
+  std::vector<Node> light_keys;  ///< what describes each of the lights
+  double film_scale = 1;         ///< of the thickness of films
   int light_groups = 0;
   std::vector<std::string> lit_alone;  ///< names of light groups that no other lights light
   /// Corners of the boxes around objects that are declared, each once: objects of objects can double at each

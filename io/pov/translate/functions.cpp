@@ -9,6 +9,7 @@
 
 #include "io/pov/formula_text.h"
 #include "io/pov/internal_functions.h"
+#include "io/pov/noise_functions.h"
 #include "io/pov/read_pov.h"
 #include "io/pov/translate/pigment.h"
 #include "kernels/functions/expression.h"
@@ -76,24 +77,31 @@ constexpr Formula kFormulas[] = {
 };
 
 /// A sum over the octaves of a pattern of noise, each twice as fine and half as high as the one before.
-/// `noise` is {0} at the place in its octave, ({1}, {2}, {3}).
+/// `noise` is made of {0}, noise in its octave.
 std::string octaves(const char* noise, int count, double scale, double weight,
-                    const std::array<std::string, 3>& p) {
+                    const std::array<std::string, 3>& p, NoiseGenerator generator) {
   std::string sum;
   for (int k = 0; k < count; ++k, scale *= 2, weight *= 0.5) {
-    const std::string at = fmt::format("noise({0} * {3}, {1} * {3}, {2} * {3})", p[0], p[1], p[2], scale);
+    const auto finer = [&](const std::string& x) { return filled("$0 * $1", {x, number_of(scale)}); };
+    const std::string at = noise_formula(generator, finer(p[0]), finer(p[1]), finer(p[2]));
     sum += fmt::format("{}{} * {}", k == 0 ? "" : " + ", fmt::format(fmt::runtime(noise), at), weight);
   }
   return sum;
 }
 
 /// The values of a pattern at p where they are between 0 and 1 everywhere. Empty if it has no formula.
-std::string bounded_formula(std::string_view word, const std::array<std::string, 3>& p) {
+std::string bounded_formula(std::string_view word, const std::array<std::string, 3>& p,
+                            NoiseGenerator generator) {
   const auto at = [&](const char* text) { return fmt::format(fmt::runtime(text), p[0], p[1], p[2]); };
-  if (word == "bozo" || word == "bumps" || word == "spotted") return at("(0.5 + 0.5 * noise({}, {}, {}))");
-  if (word == "dents") return at("(0.5 + 0.5 * noise({}, {}, {}))^3");
-  if (word == "granite") return "min(1, " + octaves("abs({})", 6, 4, 1, p) + ")";
-  if (word == "wrinkles") return "(" + octaves("max(0, min(1, 0.5 + {}))", 10, 1, 0.5, p) + ")";
+  const bool is_first = generator == NoiseGenerator::povray_1;
+  if (word == "bozo" || word == "bumps" || word == "spotted")
+    return noise_formula(generator, p[0], p[1], p[2]);
+  if (word == "dents") return noise_formula(generator, p[0], p[1], p[2]) + "^3";
+  if (word == "granite")
+    return "(" + octaves(is_first ? "abs(0.5 - {})" : "min(0.5, abs(1 - 2 * {}))", 6, 4, 1, p, generator) +
+           ")";
+  if (word == "wrinkles")
+    return "(" + octaves(is_first ? "{}" : "max(0, min(1, 2 * {} - 0.5))", 10, 1, 0.5, p, generator) + ")";
   if (word == "leopard") return at("((sin({}) + sin({}) + sin({})) / 3)^2");
   if (word == "spherical") return at("max(0, 1 - sqrt(({})^2 + ({})^2 + ({})^2))");
   if (word == "cylindrical") return at("max(0, 1 - hypot({0}, {2}))");
@@ -110,7 +118,8 @@ struct PatternFormula {
 };
 
 /// The values of a pattern at p, which are those of the pattern of this name in scene files.
-PatternFormula pattern_formula(const PovPattern& pattern, const std::array<std::string, 3>& p) {
+PatternFormula pattern_formula(const PovPattern& pattern, const std::array<std::string, 3>& p,
+                               NoiseGenerator of_scene) {
   const std::string_view word = pattern.word;
   const auto at = [&](const char* text) { return filled(text, {p[0], p[1], p[2]}); };
   if (word == "marble") return {p[0], true, true};
@@ -124,7 +133,7 @@ PatternFormula pattern_formula(const PovPattern& pattern, const std::array<std::
                                      {p[0], p[1], p[2], number_of(d.x), number_of(d.y), number_of(d.z)});
     return {filled("$0 - max(0, sign($0 - 1)) * floor($0)", {along}), true};
   }
-  return {bounded_formula(word, p)};
+  return {bounded_formula(word, p, pattern.noise_generator.value_or(of_scene))};
 }
 
 /// What the wave of a pattern makes of its values; the formulas are those of `waved` in render/warp.h.
@@ -261,7 +270,8 @@ class Writer {
   }
 
   std::string internal(std::uint32_t number, const std::vector<std::string>& operands) const {
-    if (std::optional<std::string> text = internal_text(number, operands)) return *text;
+    if (std::optional<std::string> text = internal_text(number, operands, context_.noise_generator))
+      return *text;
     throw Unwritable{
         fmt::format("a function of functions.inc that has no formula here ({})",
                     function_.name.empty() ? fmt::format("internal({})", number) : function_.name)};
@@ -336,8 +346,8 @@ class Writer {
     return moved(all.inverse(), operands);
   }
 
-  static std::string value_of(const PovPattern& p, const Coordinates& at) {
-    const PatternFormula formula = pattern_formula(p, at);
+  std::string value_of(const PovPattern& p, const Coordinates& at) const {
+    const PatternFormula formula = pattern_formula(p, at, context_.noise_generator);
     if (formula.text.empty()) throw Unwritable{fmt::format("a pattern '{}'", p.word)};
     return waved_formula(p, formula);
   }
@@ -358,13 +368,13 @@ class Writer {
   }
 
   /// As video weights colours, see pattern_figures.cpp in render/.
-  static std::string brightness(const Pigment& p, const Coordinates& at) {
+  std::string brightness(const Pigment& p, const Coordinates& at) const {
     return filled("0.297 * $0 + 0.589 * $1 + 0.114 * $2",
                   {channel(p, 0, at), channel(p, 1, at), channel(p, 2, at)});
   }
 
   template <class Operands>
-  static std::string channel(const Pigment& p, std::uint32_t index, const Operands& operands) {
+  std::string channel(const Pigment& p, std::uint32_t index, const Operands& operands) const {
     const auto of = [&](const PigmentEntry& entry) {
       const PovColor& c = entry.color;
       return index < 3 ? c.rgb[static_cast<int>(index)] : index == 3 ? c.filter : c.transmit;

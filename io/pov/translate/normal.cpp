@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -13,24 +14,12 @@
 namespace oktett::pov {
 namespace {
 
-/// How strongly a pattern bends surfaces where `normal` names it.
-struct Strength {
-  std::string_view word;
-  double height;  ///< of the value 1 and an amount of 1, in units of the pattern
-};
-/// The patterns that POV-Ray bends surfaces by in ways of their own, and one whose details are smaller than
-/// the distance over which it takes differences. As measured with 3.7.0.10: the height at which our patterns
-/// tilt a plane as much in the mean square.
-constexpr Strength kOwnStrengths[] = {{"bumps", 0.72},  {"dents", 0.17},     {"ripples", 0.5},
-                                      {"waves", 1.27},  {"wrinkles", 0.177}, {"quilted", 0.73},
-                                      {"granite", 0.06}};
+/// The patterns that POV-Ray bends surfaces by in ways of their own, which a `slope_map` does not change.
+constexpr std::array<std::string_view, 6> kBends{"bumps", "dents", "quilted", "ripples", "waves", "wrinkles"};
+bool has_own_way(const PovPattern& p) { return std::ranges::find(kBends, p.word) != kBends.end(); }
+
 /// Of all others it takes differences of values: the normal leans by 2/15 of the slope of the pattern.
 constexpr double kStrength = 2.0 / 15;
-
-double strength_of(std::string_view word) {
-  const auto* const own = std::ranges::find(kOwnStrengths, word, &Strength::word);
-  return own != std::end(kOwnStrengths) ? own->height : kStrength;
-}
 
 class NormalReader {
  public:
@@ -182,7 +171,8 @@ void read_normal(Context& context, const Block& block, Normal& normal) {
 }
 
 Node normal_node(Context& context, const Normal& n, double scale) {
-  const PovPattern& p = n.pattern;
+  PovPattern p = n.pattern;
+  p.has_generator = p.image == nullptr;
   if (p.is_none() || (n.amount == 0 && n.normals.empty())) return nullptr;
   scale *= scale_of(p);
   if (p.word == "average") {
@@ -209,12 +199,12 @@ Node normal_node(Context& context, const Normal& n, double scale) {
     }
     return pattern_node(context, p, values);
   }
-  const Node values = n.slopes.empty() || p.is_list ? nullptr : slopes_node(context, n);
-  const Node node = pattern_node(context, p, values);
+  const bool by_slopes = !n.slopes.empty() && !p.is_list && !has_own_way(p);
+  const Node node = pattern_node(context, p, by_slopes ? slopes_node(context, n) : nullptr);
   const Node copy = tree.map(p.where);
   copy->items = node->items;
   const double strength = p.image != nullptr ? strength_of_image(context, *p.image)
-                          : n.slopes.empty() ? strength_of(p.word)
+                          : has_own_way(p)   ? 1
                                              : kStrength;
   tree.put(copy, "gain", tree.number(p.where, strength * n.amount * scale));
   return copy;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "io/pov/formula_text.h"
+#include "io/pov/noise_functions.h"
 #include "io/pov/translate/extent.h"
 #include "io/pov/translate/functions.h"
 #include "io/pov/translate/inside_text.h"
@@ -26,7 +27,7 @@ constexpr PatternName kNames[] = {
     {"boxed", "boxed"},
     {"bozo", "noise"},
     {"brick", "brick"},
-    {"bumps", "noise"},
+    {"bumps", "bumps"},
     {"cells", "cells"},
     {"checker", "checker"},
     {"crackle", "crackle"},
@@ -65,8 +66,7 @@ constexpr PatternName kNames[] = {
 constexpr std::array<std::string_view, 7> kLists{"brick",  "checker",    "cubic", "hexagon",
                                                  "square", "triangular", "object"};
 /// What stands before one value that changes nothing here.
-constexpr std::array<std::string_view, 5> kIgnored{"noise_generator", "quick_color", "quick_colour",
-                                                   "interpolate", "accuracy"};
+constexpr std::array<std::string_view, 4> kIgnored{"quick_color", "quick_colour", "interpolate", "accuracy"};
 constexpr std::pair<std::string_view, std::string_view> kWaves[] = {
     {"ramp_wave", "ramp"},       {"triangle_wave", "triangle"}, {"sine_wave", "sine"},
     {"scallop_wave", "scallop"}, {"cubic_wave", "cubic"},       {"poly_wave", "poly"}};
@@ -421,6 +421,8 @@ bool PatternReader::take_modifier(Arguments& a, PovPattern& p) {
     p.phase = std::clamp(a.number("a number"), -1e9, 1e9);
   else if (a.take_word("uv_mapping"))
     p.uses_uv = a.flag();
+  else if (a.take_word("noise_generator"))
+    p.noise_generator = noise_generator_named(a.number("a number"));
   else if (is_one_of(word, kIgnored)) {
     a.take();
     if (a.is_numbers()) a.take();

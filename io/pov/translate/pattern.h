@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -40,6 +41,8 @@ struct PovPattern {
   double octaves = 6, lambda = 2, omega = 0.5;
   std::string_view wave;  ///< empty: the pattern's own
   double exponent = 1, frequency = 1, phase = 0;
+  std::optional<NoiseGenerator> noise_generator;  ///< that of the scene if there is none
+  bool has_generator = false;                     ///< is written out, also where nothing is random
 
   bool is_none() const { return word.empty(); }
   bool is_moved() const { return !modifiers.empty() || !(turbulence == Vec3d{0, 0, 0}); }

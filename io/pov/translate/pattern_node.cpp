@@ -1,11 +1,29 @@
 #include "io/pov/translate/pattern_node.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <variant>
 
 namespace oktett::pov {
+
+std::string_view generator_name(NoiseGenerator generator) {
+  return generator == NoiseGenerator::povray_1   ? "povray_1"
+         : generator == NoiseGenerator::povray_2 ? "povray_2"
+                                                 : "povray_3";
+}
+
+/// Whether noise or random numbers have to do with what the pattern shows.
+static bool is_random(const PovPattern& p) {
+  constexpr std::array<std::string_view, 10> kRandom{"agate",   "bumps", "cells",   "crackle", "dents",
+                                                     "granite", "noise", "ripples", "waves",   "wrinkles"};
+  return !(p.turbulence == Vec3d{0, 0, 0}) || std::ranges::find(kRandom, p.key) != kRandom.end() ||
+         std::ranges::any_of(p.modifiers, [](const auto& modifier) {
+           const Node* const warp = std::get_if<Node>(&modifier);
+           return warp != nullptr && has_key(**warp, "turbulence");
+         });
+}
 
 Node turbulence_node(Tree& tree, const Place& where, const PovPattern& p) {
   const Vec3d& t = p.turbulence;
@@ -23,6 +41,12 @@ void push_entry(Tree& tree, const Place& where, Node map, double at, Node value)
   Tree::push(item, tree.number(where, at));
   Tree::push(item, value);
   Tree::push(map, item);
+}
+
+void put_generator(Context& context, const PovPattern& p, Node keys) {
+  if (has_key(*keys, "noise_generator") || (!p.has_generator && !is_random(p))) return;
+  const NoiseGenerator generator = p.noise_generator.value_or(context.noise_generator);
+  context.tree.put(keys, "noise_generator", context.tree.word(p.where, generator_name(generator)));
 }
 
 Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under) {
@@ -132,6 +156,7 @@ Node pattern_node(Context& context, const PovPattern& p, Node values) {
     if (p.phase != 0) tree.put(keys, "phase", tree.number(where, p.phase));
   }
   if (!(p.turbulence == Vec3d{0, 0, 0})) tree.put(keys, "turbulence", turbulence_node(tree, where, p));
+  put_generator(context, p, keys);
   // The last moves are the transform; what is nearer to the pattern stands among the warps.
   std::size_t count = p.modifiers.size();
   Node transform = nullptr;

@@ -7,11 +7,18 @@
 
 namespace oktett::pov {
 
+/// The value of `noise_generator` that means a noise of POV-Ray's.
+std::string_view generator_name(NoiseGenerator generator);
+
 /// The value of `turbulence`.
 Node turbulence_node(Tree& tree, const Place& where, const PovPattern& pattern);
 
 /// Adds an entry [at, value] to the `map` of a pattern.
 void push_entry(Tree& tree, const Place& where, Node map, double at, Node value);
+
+/// Adds the key `noise_generator` of a pattern that has to do with random numbers, or is to bend surfaces as
+/// in POV-Ray.
+void put_generator(Context& context, const PovPattern& pattern, Node keys);
 
 /// `color`, and `under` as far as `filter` lets it through; each a colour, a number or a texture.
 Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under);

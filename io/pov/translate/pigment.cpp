@@ -394,7 +394,11 @@ Node mean_node(Context& context, const PovPattern& average, const std::vector<We
   for (const WeightedNode& node : nodes) {
     const Node part = scaled(tree, where, *node.value, node.weight / sum);
     if (all != nullptr) {
-      all = over_node(tree, where, part, tree.number(where, 1), all);
+      const Node keys = tree.map(where);
+      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)),
+          tree.put(keys, "under", all);
+      if (average.has_generator) put_generator(context, average, keys);
+      all = tree.map(where, "over", keys);
     } else {
       all = part;
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/pov/noise_functions.h"
 #include "io/pov/translate/atmosphere.h"
 #include "io/pov/translate/look.h"
 #include "io/pov/translate/objects.h"
@@ -35,6 +36,12 @@ SceneGamma gamma_of(const Document& document) {
     }
   }
   return gamma;
+}
+
+/// What a translation takes from all of the document before it begins.
+void take_settings(Context& context) {
+  context.gamma = gamma_of(context.document);
+  context.noise_generator = noise_generator_of(context.document);
 }
 
 /// Statements that stand for themselves.
@@ -103,10 +110,26 @@ void begin_sections(Context& context) {
 
 }  // namespace
 
+NoiseGenerator noise_generator_of(const Document& document) {
+  NoiseGenerator generator = document.version < 3.5 ? NoiseGenerator::povray_1 : NoiseGenerator::povray_2;
+  for (const Element& statement : document.statements) {
+    const Block* const block = block_of(statement);
+    if (block == nullptr || block->keyword != "global_settings") continue;
+    for (std::size_t i = 0; i + 1 < block->elements.size(); ++i) {
+      const auto* const word = std::get_if<Word>(&block->elements[i].value);
+      const auto* const number = std::get_if<Numbers>(&block->elements[i + 1].value);
+      if (word != nullptr && word->text == "noise_generator" && number != nullptr)
+        generator = noise_generator_named(number->v[0]);
+    }
+  }
+  return generator;
+}
+
 TranslatedObject translate_object(const Document& document, const std::shared_ptr<const Block>& object,
                                   bool as_solid, ObjectQueries* queries) {
   Context context(document);
   context.queries = queries;
+  take_settings(context);
   begin_sections(context);
   const Element shown{object->where, object};
   ObjectWriter objects(context, {&shown, 1});
@@ -121,7 +144,7 @@ TranslatedObject translate_object(const Document& document, const std::shared_pt
 TranslatedScene translate_look(const Document& document, const std::shared_ptr<const Block>& look) {
   Context context(document);
   begin_sections(context);
-  context.gamma = gamma_of(document);
+  take_settings(context);
   auto sphere = std::make_shared<Block>();
   sphere->keyword = "sphere", sphere->where = look->where;
   sphere->elements = {
@@ -137,7 +160,7 @@ TranslatedScene translate_look(const Document& document, const std::shared_ptr<c
 TranslatedScene translate(const Document& document, const TranslateOptions& options) {
   Context context(document);
   context.warnings = document.warnings;
-  context.gamma = gamma_of(document);
+  take_settings(context);
   context.mesh_prefix = options.mesh_prefix, context.queries = options.queries;
   Tree& tree = context.tree;
   const Place top;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/noise_generator.h"
 #include "io/pov/document.h"
 #include "io/pov/translate/extent.h"
 #include "io/yaml/yaml.h"
@@ -34,6 +35,10 @@ struct TranslateOptions {
 /// Throws Error for what cannot be meant. What scene files do not have is left out with a warning, one for
 /// each kind.
 TranslatedScene translate(const Document& document, const TranslateOptions& options = {});
+
+/// The noise of the scene's patterns and functions that choose none: what `global_settings` says last, else
+/// that of the version.
+NoiseGenerator noise_generator_of(const Document& document);
 
 /// One object for questions about its shape.
 struct TranslatedObject {
