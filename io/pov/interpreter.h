@@ -245,7 +245,7 @@ class Interpreter {
   std::vector<std::uint32_t> streams_;  ///< of random numbers
   std::shared_ptr<ArrayCount> array_count_ = std::make_shared<ArrayCount>();
   BlockPtr default_texture_;
-  double version_ = 3.7;         ///< what `version` is
+  double version_ = 3.7;  ///< what `version` is
   std::uint32_t nesting_ = 0, includes_ = 0, macro_depth_ = 0;
   std::uint64_t steps_ = 0, values_ = 0, bytes_ = 0;
 };

@@ -248,6 +248,9 @@ TEST(PovScene, LooksBecomeMaterials) {
       "{material: {color: {checker: {colors: [[0, 0, 0], [1, 1, 1]], transform: {scale: 2}}}, ambient: 0.1, "
       "diffuse: 0.6}}");
   // What is moved before it gets its texture.
+  EXPECT_NE(
+      material("pigment { rgb 1 } scale 2 pigment { checker rgb 0, rgb 1 scale 3 }").find("{matrix: [2, 0,"),
+      std::string::npos);
   EXPECT_EQ(material("translate x pigment { checker rgb 0, rgb 1 }"),
             "{material: {color: {checker: {colors: [[0, 0, 0], [1, 1, 1]], transform: {matrix: [1, 0, 0, -1, "
             "0, 1, 0, 0, 0, 0, "
@@ -370,10 +373,10 @@ TEST(PovScene, TexturesInPatternsAndLayers) {
             "{material: {color: [1, 1, 1], ambient: 0.1, diffuse: 0.6, map_bump: {linear: {direction: [1, 0, "
             "0], noise_generator: povray_2, "
             "transform: {scale: 2}}, gain: 0.2}}}");
-  EXPECT_EQ(
-      material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
-      "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: {scale: 3}}}, ambient: 0.1, "
-      "diffuse: 0.6}}");
+  EXPECT_EQ(material("texture { pigment { rgb 1 } scale 2 pigment { checker scale 3 } }"),
+            "{material: {color: {checker: {colors: [[0, 0, 1], [0, 1, 0]], transform: [{scale: 2}, {scale: "
+            "3}]}}, ambient: 0.1, "
+            "diffuse: 0.6}}");
 }
 
 TEST(PovScene, MeansOfTexturesAndNormals) {

@@ -120,8 +120,8 @@ class TextureReader {
     if (block.keyword == "pigment") {
       Pigment stated;
       read_pigment(context_, block, stated);
-      // What names no pigment changes the one that is there.
-      if (stated.is_stated)
+      // What has no name changes the one that is there, which keeps its transforms and turbulence.
+      if (stated.is_stated && !stated.name.empty())
         look.pigment = std::move(stated);
       else
         read_pigment(context_, block, look.pigment);
@@ -250,12 +250,14 @@ Look look_of(Context& context, const std::vector<LookItem>& items,
     Moves moves;
     if (item.to_texture.is_invertible() && !(item.to_texture == Affine{}))
       moves.add({Move::Kind::matrix, {}, item.to_texture.inverse(), {}});
-    if (k == "pigment" && !own.pigment.is_stated) {
-      // It changes the pigment that is there, where the block stands.
+    if (k == "pigment" && (!own.pigment.is_stated || own.pigment.name.empty())) {
+      // It changes the pigment that is there, where the block stands, and leaves it its transforms and
+      // turbulence. The default one stands there unmoved.
       Moves there;
-      if (!moves.empty()) there.add({Move::Kind::matrix, {}, item.to_texture, {}});
+      if (!moves.empty() && !is_first) there.add({Move::Kind::matrix, {}, item.to_texture, {}});
       top.move_in_space(there);
       read_pigment(context, *item.block, top.pigment);
+      if (item.by_uv) top.pigment.pattern.uses_uv = true;
       top.move_in_space(moves), is_first = false;
       continue;
     }
