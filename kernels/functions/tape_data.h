@@ -90,8 +90,8 @@ inline constexpr std::string_view kSurfaceVariables[] = {"u", "v"};
 
 /// Compiles a text: numbers, + - * / ^, parentheses, up to three variables, the constants pi and e, and
 /// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
-/// sign hypot (angles in radians) and noise(a, b, c) and povray_noise(a, b, c), the
-/// noises of core/noise.h. Constants are rounded
+/// sign hypot (angles in radians) and noise(a, b, c) and povray_noise(a, b, c),
+/// Perlin's noise and POV-Ray's. Constants are rounded
 /// to double. a^b, where b is no constant, is exp(b log a); it and powers with an exponent that is not whole,
 /// or greater than kMaxTapePower, are defined for a >= 0 only.
 ///
