@@ -189,6 +189,15 @@ std::vector<double> make_cell_numbers() {
   return numbers;
 }
 
+std::vector<PovrayWave> make_waves(std::uint32_t count) {
+  std::vector<PovrayWave> waves;
+  TableRandom random(static_cast<std::uint32_t>(-560851967));
+  for (std::uint32_t i = 0; i < count; ++i)
+    waves.push_back(
+        {normalize(povray_noise_vector({double(i), 0, 0})), random.next() * 0.000030518509476 + 0.01});
+  return waves;
+}
+
 }  // namespace
 
 void povray_corners(std::int64_t x, std::int64_t y, std::int64_t z, const double* (&corners)[8]) {
@@ -221,15 +230,10 @@ double povray_cell_number(std::int64_t x, std::int64_t y, std::int64_t z, int wh
   return numbers[first + static_cast<std::uint32_t>(which)];
 }
 
-Vec3d povray_wave_source(std::uint32_t number) {
-  return normalize(povray_noise_vector({double(number), 0, 0}));
-}
-
-double povray_wave_frequency(std::uint32_t number) {
-  TableRandom random(static_cast<std::uint32_t>(-560851967));
-  double frequency = 0;
-  for (std::uint32_t i = 0; i <= number; ++i) frequency = random.next() * 0.000030518509476 + 0.01;
-  return frequency;
+PovrayWave povray_wave(std::uint32_t number) {
+  // As many as patterns of scene files have.
+  static const std::vector<PovrayWave> first = make_waves(100);
+  return number < first.size() ? first[number] : make_waves(number + 1).back();
 }
 
 }  // namespace oktett

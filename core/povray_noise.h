@@ -21,9 +21,11 @@ Vec3d povray_noise_vector(const Vec3d& p);
 /// crackle in a cell.
 double povray_cell_number(std::int64_t x, std::int64_t y, std::int64_t z, int which);
 
-/// Where the wave of this number starts, a unit vector, and its frequency, as `ripples` and `waves` have
-/// them.
-Vec3d povray_wave_source(std::uint32_t number);
-double povray_wave_frequency(std::uint32_t number);
+/// One of the waves of `ripples` and `waves`.
+struct PovrayWave {
+  Vec3d source;  ///< of unit length
+  double frequency;
+};
+PovrayWave povray_wave(std::uint32_t number);
 
 }  // namespace oktett

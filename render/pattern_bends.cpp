@@ -15,14 +15,15 @@ namespace {
 
 double sine(double turns) { return portable::sin(2 * std::numbers::pi * fraction_of(turns)); }
 
-/// The sum of what waves from all sources add, each along its own way: height(i, distance) of source i.
+/// The sum of what waves from all sources add, each along its own way: height(distance, frequency).
 template <class Height>
 Vec3d sum_of_waves(std::uint32_t sources, const Vec3d& p, const Height& height) {
   Vec3d sum{0, 0, 0};
   for (std::uint32_t i = 0; i < sources; ++i) {
-    const Vec3d way = p - povray_wave_source(i);
+    const PovrayWave wave = povray_wave(i);
+    const Vec3d way = p - wave.source;
     const double distance = length(way);
-    if (distance > 0) sum += way * (height(i, distance) / (distance * sources));
+    if (distance > 0) sum += way * (height(distance, wave.frequency) / (distance * sources));
   }
   return sum;
 }
@@ -34,22 +35,19 @@ Vec3d bend(const DentsPattern& d, const Vec3d& p, const PatternFrame& frame) {
 }
 
 Vec3d bend(const QuiltedPattern& q, const Vec3d& p, const PatternFrame&) {
-  const Vec3d from_middle{fraction_of(p.x) - 0.5, fraction_of(p.y) - 0.5, fraction_of(p.z) - 0.5};
+  const Vec3d from_middle = from_cushion_middle(p);
   return from_middle * (cushion_curve(q, length(from_middle)) * 2 / std::numbers::sqrt3);
 }
 
 Vec3d bend(const RipplesPattern& r, const Vec3d& p, const PatternFrame& frame) {
-  const Wave& wave = frame.wave;
-  return sum_of_waves(r.sources, p, [&](std::uint32_t, double distance) {
-    return sine(distance * wave.frequency + wave.phase);
+  return sum_of_waves(r.sources, p, [&](double distance, double) {
+    return sine(distance * frame.wave.frequency + frame.wave.phase);
   });
 }
 
 Vec3d bend(const WavesPattern& w, const Vec3d& p, const PatternFrame& frame) {
-  const Wave& wave = frame.wave;
-  return sum_of_waves(w.sources, p, [&](std::uint32_t i, double distance) {
-    const double own = povray_wave_frequency(i);
-    return sine(distance * own * wave.frequency + wave.phase) / own;
+  return sum_of_waves(w.sources, p, [&](double distance, double own) {
+    return sine(distance * own * frame.wave.frequency + frame.wave.phase) / own;
   });
 }
 

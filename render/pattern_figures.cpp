@@ -85,13 +85,17 @@ double raw_value(const OnionPattern&, const Vec3d& p, const PatternFrame&) { ret
 
 double raw_value(const PlanarPattern&, const Vec3d& p, const PatternFrame&) { return down(std::abs(p.y)); }
 
+Vec3d from_cushion_middle(const Vec3d& p) {
+  return {fraction_of(p.x) - 0.5, fraction_of(p.y) - 0.5, fraction_of(p.z) - 0.5};
+}
+
 double cushion_curve(const QuiltedPattern& q, double distance) {
   const double t = distance, s = 1 - t;
   return t * (3 * s * (s * q.control0 + t * q.control1) + t * t);
 }
 
 double raw_value(const QuiltedPattern& q, const Vec3d& p, const PatternFrame&) {
-  const Vec3d from_middle{fraction_of(p.x) - 0.5, fraction_of(p.y) - 0.5, fraction_of(p.z) - 0.5};
+  const Vec3d from_middle = from_cushion_middle(p);
   // The curve times the sum of the axes; 1 would be the value where both the distance and the axes are
   // 1 / sqrt(3) times 3 / 2.
   const double curve = cushion_curve(q, length(from_middle));
@@ -111,34 +115,28 @@ double raw_value(const RingsPattern&, const Vec3d& p, const PatternFrame& frame)
 }
 
 double raw_value(const RipplesPattern& r, const Vec3d& p, const PatternFrame& frame) {
+  const bool own = frame.turbulence.generator == NoiseGenerator::own;
   double sum = 0;
-  if (frame.turbulence.generator != NoiseGenerator::own) {
-    for (std::uint32_t i = 0; i < r.sources; ++i)
-      sum += sine_wave(length(p - povray_wave_source(i)) * frame.wave.frequency + frame.wave.phase);
-    return sum / r.sources;
+  for (std::uint32_t i = 0; i < r.sources; ++i) {
+    const Vec3d source = own ? random_direction(i) : povray_wave(i).source;
+    sum += sine_wave(length(p - source) * frame.wave.frequency + frame.wave.phase);
   }
-  for (std::uint32_t i = 0; i < r.sources; ++i)
-    sum += sine_wave(length(p - random_direction(i)) * frame.wave.frequency + frame.wave.phase);
   return sum / r.sources;
 }
 
 double raw_value(const WavesPattern& w, const Vec3d& p, const PatternFrame& frame) {
+  const bool own = frame.turbulence.generator == NoiseGenerator::own;
   double sum = 0;
-  if (frame.turbulence.generator != NoiseGenerator::own) {
-    // The slow waves are the high ones.
-    for (std::uint32_t i = 0; i < w.sources; ++i) {
-      const double own = povray_wave_frequency(i);
-      const double wave =
-          sine_wave(length(p - povray_wave_source(i)) * own * frame.wave.frequency + frame.wave.phase);
-      sum += (2 * wave - 1) / own;
-    }
-    return 0.2 * (2.5 + sum / w.sources);
-  }
   for (std::uint32_t i = 0; i < w.sources; ++i) {
-    const double own = unit_of(mix_bits((i + std::uint64_t{1}) * kGoldenBits + 1));
-    sum += sine_wave(length(p - random_direction(i)) * own * frame.wave.frequency + frame.wave.phase);
+    const PovrayWave wave =
+        own ? PovrayWave{random_direction(i), unit_of(mix_bits((i + std::uint64_t{1}) * kGoldenBits + 1))}
+            : povray_wave(i);
+    const double height =
+        sine_wave(length(p - wave.source) * wave.frequency * frame.wave.frequency + frame.wave.phase);
+    // In POV-Ray the slow waves are the high ones.
+    sum += own ? height : (2 * height - 1) / wave.frequency;
   }
-  return sum / w.sources;
+  return own ? sum / w.sources : 0.2 * (2.5 + sum / w.sources);
 }
 
 double raw_value(const SphericalPattern&, const Vec3d& p, const PatternFrame&) { return down(length(p)); }

@@ -36,6 +36,8 @@ double raw_value(const TexturePattern& t, const Vec3d& p, const PatternFrame&);
 double raw_value(const VoxelPattern& v, const Vec3d& p, const PatternFrame&);
 double raw_value(const WavesPattern& w, const Vec3d& p, const PatternFrame&);
 
+/// The way from the middle of a cushion of `quilted`.
+Vec3d from_cushion_middle(const Vec3d& p);
 /// A Bezier curve of the distance from the middle of a cushion, which runs to 1 at 1.
 double cushion_curve(const QuiltedPattern& q, double distance);
 

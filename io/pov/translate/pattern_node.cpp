@@ -49,10 +49,14 @@ void put_generator(Context& context, const PovPattern& p, Node keys) {
   context.tree.put(keys, "noise_generator", context.tree.word(p.where, generator_name(generator)));
 }
 
-Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under) {
+Node over_keys(Tree& tree, const Place& where, Node color, Node filter, Node under) {
   const Node keys = tree.map(where);
   tree.put(keys, "color", color), tree.put(keys, "filter", filter), tree.put(keys, "under", under);
-  return tree.map(where, "over", keys);
+  return keys;
+}
+
+Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under) {
+  return tree.map(where, "over", over_keys(tree, where, color, filter, under));
 }
 
 double scale_of(const PovPattern& pattern) {

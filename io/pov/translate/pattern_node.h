@@ -20,6 +20,8 @@ void push_entry(Tree& tree, const Place& where, Node map, double at, Node value)
 /// in POV-Ray.
 void put_generator(Context& context, const PovPattern& pattern, Node keys);
 
+/// The keys of a pattern `over`.
+Node over_keys(Tree& tree, const Place& where, Node color, Node filter, Node under);
 /// `color`, and `under` as far as `filter` lets it through; each a colour, a number or a texture.
 Node over_node(Tree& tree, const Place& where, Node color, Node filter, Node under);
 

@@ -394,9 +394,7 @@ Node mean_node(Context& context, const PovPattern& average, const std::vector<We
   for (const WeightedNode& node : nodes) {
     const Node part = scaled(tree, where, *node.value, node.weight / sum);
     if (all != nullptr) {
-      const Node keys = tree.map(where);
-      tree.put(keys, "color", part), tree.put(keys, "filter", tree.number(where, 1)),
-          tree.put(keys, "under", all);
+      const Node keys = over_keys(tree, where, part, tree.number(where, 1), all);
       if (average.has_generator) put_generator(context, average, keys);
       all = tree.map(where, "over", keys);
     } else {

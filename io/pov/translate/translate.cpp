@@ -20,21 +20,26 @@ const Block* block_of(const Element& statement) {
   return block != nullptr ? block->get() : nullptr;
 }
 
-SceneGamma gamma_of(const Document& document) {
-  SceneGamma gamma{1, document.version < 3.7};
+/// Calls f with what follows each of these words in the `global_settings` of the document.
+template <class F>
+void for_each_setting(const Document& document, std::string_view name, const F& f) {
   for (const Element& statement : document.statements) {
     const Block* const block = block_of(statement);
     if (block == nullptr || block->keyword != "global_settings") continue;
     for (std::size_t i = 0; i + 1 < block->elements.size(); ++i) {
       const auto* const word = std::get_if<Word>(&block->elements[i].value);
-      if (word == nullptr || word->text != "assumed_gamma") continue;
-      if (const auto* const number = std::get_if<Numbers>(&block->elements[i + 1].value))
-        gamma = {std::isfinite(number->v[0]) ? std::clamp(number->v[0], 0.1, 10.0) : 1, false};
-      if (const auto* const name = std::get_if<Word>(&block->elements[i + 1].value);
-          name && name->text == "srgb")
-        gamma = {1, true};
+      if (word != nullptr && word->text == name) f(block->elements[i + 1].value);
     }
   }
+}
+
+SceneGamma gamma_of(const Document& document) {
+  SceneGamma gamma{1, document.version < 3.7};
+  for_each_setting(document, "assumed_gamma", [&](const auto& value) {
+    if (const auto* const number = std::get_if<Numbers>(&value))
+      gamma = {std::isfinite(number->v[0]) ? std::clamp(number->v[0], 0.1, 10.0) : 1, false};
+    if (const auto* const word = std::get_if<Word>(&value); word && word->text == "srgb") gamma = {1, true};
+  });
   return gamma;
 }
 
@@ -112,16 +117,10 @@ void begin_sections(Context& context) {
 
 NoiseGenerator noise_generator_of(const Document& document) {
   NoiseGenerator generator = document.version < 3.5 ? NoiseGenerator::povray_1 : NoiseGenerator::povray_2;
-  for (const Element& statement : document.statements) {
-    const Block* const block = block_of(statement);
-    if (block == nullptr || block->keyword != "global_settings") continue;
-    for (std::size_t i = 0; i + 1 < block->elements.size(); ++i) {
-      const auto* const word = std::get_if<Word>(&block->elements[i].value);
-      const auto* const number = std::get_if<Numbers>(&block->elements[i + 1].value);
-      if (word != nullptr && word->text == "noise_generator" && number != nullptr)
-        generator = noise_generator_named(number->v[0]);
-    }
-  }
+  for_each_setting(document, "noise_generator", [&](const auto& value) {
+    if (const auto* const number = std::get_if<Numbers>(&value))
+      generator = noise_generator_named(number->v[0]);
+  });
   return generator;
 }
 
